@@ -1,0 +1,17 @@
+# What every target of the project has in common: language level, warnings, sanitizers.
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+function(insym_target name)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  target_compile_options(${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+    $<$<BOOL:${INSYM_WARNINGS_AS_ERRORS}>:-Werror>)
+  # Same bytes everywhere: no contraction of a*b+c, which depends on the machine.
+  target_compile_options(${name} PRIVATE -ffp-contract=off)
+  if(INSYM_SANITIZE)
+    target_compile_options(${name} PRIVATE -fsanitize=${INSYM_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(${name} PUBLIC -fsanitize=${INSYM_SANITIZE})
+    target_compile_options(${name} PRIVATE -fno-sanitize-recover=all)
+  endif()
+endfunction()

@@ -1,0 +1,120 @@
+// The detector: options in, every approximate incomplete symmetry out.
+#pragma once
+
+#include "insym/error.hpp"
+#include "insym/isometry.hpp"
+#include "insym/point_set.hpp"
+#include "insym/run_context.hpp"
+#include "insym/symmetry_type.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace insym {
+
+/// Which definition of a symmetry is used (definitions, sections 4 to 6).
+enum class Method {
+    paper,  ///< cycles and clusters of consistent cycles, as in Li, Langbein and Martin 2007
+};
+
+/// What to look for. The defaults suit exact and slightly noisy models.
+struct DetectOptions {
+    Method method = Method::paper;
+    TypeSet types = TypeSet::all();       ///< kinds to look for; not empty
+    double resolution = 1e-6;             ///< share of the diameter, in (0, 1): equal lengths
+    std::optional<double> max_tolerance;  ///< share of the diameter, in [resolution, 1]; none: auto
+};
+
+/// The tolerances over which something holds, in the input's unit; max may be infinite.
+struct ToleranceInterval {
+    double min = 0;
+    double max = 0;
+};
+
+/// A sequence of distinct points, sigma: each to the next (definitions, section 2).
+struct Orbit {
+    std::vector<int> points;  ///< 0-based indices into DetectResult::points
+    bool closed = false;      ///< sigma also maps the last point to the first
+};
+
+/// A cycle that satisfies C1, C2 and C3 (definitions, sections 3 to 5).
+struct Cycle {
+    std::vector<int> points;
+    bool closed = false;
+    TypeSet types;
+    ToleranceInterval tolerance;
+};
+
+/// Distance of the images to the points they belong to, over all links, in the input's unit.
+struct Deviation {
+    double rms = 0;
+    double max = 0;
+};
+
+/// One symmetry with what section 7 of the definitions asks of it.
+struct Symmetry {
+    int id = 0;  ///< 1-based rank in the list
+    SymmetryType type = SymmetryType::mirror;
+    std::optional<int> order;   ///< 360 degrees over the angle, where that is whole
+    Isometry isometry;          ///< least squares over all links
+    std::vector<Orbit> cycles;  ///< in the direction of the isometry
+    ToleranceInterval tolerance;
+    Deviation deviation;
+    double coverage = 0;            ///< share of all points that the isometry takes to a point
+    std::vector<int> fixed_points;  ///< points that the isometry leaves in place
+    std::vector<Point> missing;     ///< empty slots of the pattern
+    double significance = 0;        ///< log10 of the expected number of false alarms
+    bool maximal = true;            ///< inside no larger symmetry of the list
+    std::vector<int> implied_by;    ///< ids of better-ranked symmetries that give this one
+};
+
+enum class RunStatus { complete, time_limit, cancelled, result_limit };
+
+/// Something the user should know: a stable code and a sentence.
+struct Diagnostic {
+    std::string code;
+    std::string message;
+};
+
+/// The columns of the paper's Table 1.
+struct Stats {
+    std::size_t seeds = 0;
+    std::size_t cycles = 0;
+    std::size_t symmetries = 0;
+};
+
+/// Seconds of wall-clock time.
+struct Timing {
+    double cycles_s = 0;
+    double symmetries_s = 0;
+    double detect_s = 0;
+};
+
+struct DetectResult {
+    RunStatus status = RunStatus::complete;
+    DetectOptions options;     ///< as given
+    PointSet points;           ///< after merging; all indices refer to it
+    double diameter = 0;       ///< longest distance between two points
+    double resolution = 0;     ///< the length used, in the input's unit
+    double max_tolerance = 0;  ///< the length used, in the input's unit
+    int merged_points = 0;     ///< how many points fell together with another
+    std::vector<Cycle> cycles;
+    std::vector<Symmetry> symmetries;  ///< best rank first
+    Stats stats;
+    Timing timing;
+    std::vector<Diagnostic> diagnostics;
+};
+
+/// Finds the symmetries of `points`.
+///
+/// Cost: grows with the number of near-isosceles triangles within the tolerance and with the
+/// number of symmetries; see docs/algorithm.md. Thread-safe: calls share no state. The result is
+/// the same for any number of threads. A run that is cancelled or reaches its deadline returns
+/// what it has, with `status` saying so; everything in it is valid.
+/// Throws Error: invalid_option for options out of range; invalid_input for fewer than two
+/// distinct points, coordinates that are not finite, or distances that overflow.
+DetectResult detect(const PointSet& points, const DetectOptions& options = {},
+                    const RunContext& context = {});
+
+}  // namespace insym

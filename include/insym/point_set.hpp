@@ -1,0 +1,47 @@
+// The input of the detector: points in the plane or in space, with optional labels and origins.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace insym {
+
+/// A position x, y, z in the unit of the input. In 2D the third coordinate is 0.
+using Point = std::array<double, 3>;
+
+/// What a representative point of a model stands for.
+enum class EntityKind { vertex, edge, face };
+
+/// The part of a model that a point comes from.
+struct Entity {
+    EntityKind kind = EntityKind::vertex;
+    std::int64_t id = 0;   ///< 1-based index in the reader's documented, stable order
+    std::string geometry;  ///< "point", "circle", "line", "plane", ...
+};
+
+/// A set of points in E^d (definitions, section 1).
+///
+/// `labels` and `entities` are either empty or hold one item for each position.
+/// A cycle never mixes labels. The detector merges equal points itself.
+struct PointSet {
+    int dimension = 3;             ///< 2 or 3
+    std::vector<Point> positions;  ///< finite coordinates, in the input's unit
+    std::vector<int> labels;       ///< any integers; empty: all points are alike
+    std::vector<Entity> entities;  ///< empty where the input is not a model
+
+    std::size_t size() const { return positions.size(); }
+};
+
+/// A point set together with where it came from; what every reader returns.
+struct Input {
+    PointSet points;
+    std::string path;                 ///< as given by the caller, "-" for standard input
+    std::string format;               ///< "xyz", "csv", "step", ...
+    std::optional<std::string> unit;  ///< "mm" for models; none for bare points
+};
+
+}  // namespace insym

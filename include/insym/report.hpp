@@ -1,0 +1,26 @@
+// The result as a JSON report (schema insym.report/1) and as a table for people.
+#pragma once
+
+#include "insym/detect.hpp"
+
+#include <iosfwd>
+#include <string>
+
+namespace insym {
+
+/// What the report says beyond the result itself.
+struct ReportContext {
+    std::string path;                 ///< of the input
+    std::string format;               ///< of the input
+    std::optional<std::string> unit;  ///< of all lengths
+    std::string points = "points";    ///< what the points stand for: "points", "vertices"
+    double load_s = 0;                ///< time to read the input
+};
+
+/// Writes the report; all lengths in the input's unit, angles in degrees. Linear in its size.
+void write_json(std::ostream& out, const DetectResult& result, const ReportContext& context);
+
+/// Writes a ranked table of the first `limit` symmetries (0: all) with units, for people.
+void write_table(std::ostream& out, const DetectResult& result, const ReportContext& context, int limit);
+
+}  // namespace insym
