@@ -14,6 +14,7 @@ endif()
 if(INSYM_BUILD_APP)
   install(TARGETS insym_app)
 endif()
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 configure_package_config_file(cmake/insym-config.cmake.in insym-config.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/insym)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "insym/error.hpp"
+#include "insym/export.hpp"
 #include "insym/isometry.hpp"
 #include "insym/point_set.hpp"
 #include "insym/run_context.hpp"
@@ -71,12 +72,6 @@ struct Symmetry {
 
 enum class RunStatus { complete, time_limit, cancelled, result_limit };
 
-/// Something the user should know: a stable code and a sentence.
-struct Diagnostic {
-    std::string code;
-    std::string message;
-};
-
 /// The columns of the paper's Table 1.
 struct Stats {
     std::size_t seeds = 0;
@@ -114,7 +109,7 @@ struct DetectResult {
 /// what it has, with `status` saying so; everything in it is valid.
 /// Throws Error: invalid_option for options out of range; invalid_input for fewer than two
 /// distinct points, coordinates that are not finite, or distances that overflow.
-DetectResult detect(const PointSet& points, const DetectOptions& options = {},
-                    const RunContext& context = {});
+INSYM_EXPORT DetectResult detect(const PointSet& points, const DetectOptions& options = {},
+                                 const RunContext& context = {});
 
 }  // namespace insym

@@ -1,6 +1,8 @@
 // Every failure of the library is an Error: a stable code and one sentence for the user.
 #pragma once
 
+#include "insym/export.hpp"
+
 #include <stdexcept>
 #include <string>
 
@@ -15,7 +17,7 @@ enum class ErrorCode {
 };
 
 /// what() is one clear sentence that names the option, the file or the line.
-class Error : public std::runtime_error {
+class INSYM_EXPORT Error : public std::runtime_error {
 public:
     Error(ErrorCode code, const std::string& sentence) : std::runtime_error(sentence), code_(code) {}
     ErrorCode code() const { return code_; }

@@ -36,12 +36,19 @@ struct PointSet {
     std::size_t size() const { return positions.size(); }
 };
 
+/// Something the user should know: a stable code and a sentence.
+struct Diagnostic {
+    std::string code;
+    std::string message;
+};
+
 /// A point set together with where it came from; what every reader returns.
 struct Input {
     PointSet points;
-    std::string path;                 ///< as given by the caller, "-" for standard input
-    std::string format;               ///< "xyz", "csv", "step", ...
-    std::optional<std::string> unit;  ///< "mm" for models; none for bare points
+    std::string path;                       ///< as given by the caller, "-" for standard input
+    std::string format;                     ///< "xyz", "csv", "step", ...
+    std::optional<std::string> unit;        ///< "mm" for models; none for bare points
+    std::vector<Diagnostic> diagnostics{};  ///< what the reader passed over; callers add it to the report's
 };
 
 }  // namespace insym

@@ -1,6 +1,7 @@
 // Reader for boundary models (component `brep`, which needs Open CASCADE).
 #pragma once
 
+#include "insym/export.hpp"
 #include "insym/point_set.hpp"
 
 #include <string>
@@ -13,9 +14,9 @@ namespace insym {
 /// of Open CASCADE's map of the whole shape's vertices. Not thread-safe: Open CASCADE's readers
 /// keep global state; calls are serialised inside.
 /// Throws Error: cannot_read (no such file, not STEP, damaged), invalid_input (no geometry).
-Input read_model_file(const std::string& path);
+INSYM_EXPORT Input read_model_file(const std::string& path);
 
 /// True if the ending of `path` is one that read_model_file() takes.
-bool is_model_path(const std::string& path);
+INSYM_EXPORT bool is_model_path(const std::string& path);
 
 }  // namespace insym

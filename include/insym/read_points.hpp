@@ -1,6 +1,7 @@
 // Readers for bare points in text.
 #pragma once
 
+#include "insym/export.hpp"
 #include "insym/point_set.hpp"
 
 #include <iosfwd>
@@ -18,7 +19,7 @@ struct ReadPointsOptions {
 };
 
 /// Parses "x,y,label" and the like; `skip` leaves a column out. Throws Error(invalid_option).
-std::vector<Column> parse_columns(const std::string& text);
+INSYM_EXPORT std::vector<Column> parse_columns(const std::string& text);
 
 /// Reads points from text: columns parted by blanks, tabs, commas or semicolons; lines that start
 /// with # or // and blank lines are passed over; one header line of names is accepted in .csv. The
@@ -28,9 +29,10 @@ std::vector<Column> parse_columns(const std::string& text);
 /// `name` is used in messages and, by its ending, as the format. Coordinates are kept as read.
 /// Throws Error: cannot_read (no such file, a directory, binary data), invalid_input (no points, a
 /// word that is not a finite number, lines of different lengths), each naming file and line.
-Input read_points(std::istream& stream, const std::string& name, const ReadPointsOptions& options = {});
+INSYM_EXPORT Input read_points(std::istream& stream, const std::string& name,
+                               const ReadPointsOptions& options = {});
 
 /// The same from a file.
-Input read_points_file(const std::string& path, const ReadPointsOptions& options = {});
+INSYM_EXPORT Input read_points_file(const std::string& path, const ReadPointsOptions& options = {});
 
 }  // namespace insym

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "insym/detect.hpp"
+#include "insym/export.hpp"
 
 #include <iosfwd>
 #include <string>
@@ -18,9 +19,10 @@ struct ReportContext {
 };
 
 /// Writes the report; all lengths in the input's unit, angles in degrees. Linear in its size.
-void write_json(std::ostream& out, const DetectResult& result, const ReportContext& context);
+INSYM_EXPORT void write_json(std::ostream& out, const DetectResult& result, const ReportContext& context);
 
 /// Writes a ranked table of the first `limit` symmetries (0: all) with units, for people.
-void write_table(std::ostream& out, const DetectResult& result, const ReportContext& context, int limit);
+INSYM_EXPORT void write_table(std::ostream& out, const DetectResult& result, const ReportContext& context,
+                              int limit);
 
 }  // namespace insym

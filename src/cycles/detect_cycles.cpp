@@ -1,0 +1,291 @@
+#include "cycles/detect_cycles.hpp"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "cycles/chain.hpp"
+#include "cycles/chain_memo.hpp"
+#include "cycles/types.hpp"
+
+namespace insym {
+namespace {
+
+/// A sequence in the one form that all its reversals and rotations share.
+struct CanonicalCycle {
+    std::vector<int> points;
+    bool closed = false;
+    friend auto operator<=>(const CanonicalCycle&, const CanonicalCycle&) = default;
+};
+
+CanonicalCycle canonical(std::span<const int> sequence, bool closed) {
+    std::vector<int> p(sequence.begin(), sequence.end());
+    if (closed) {
+        std::rotate(p.begin(), std::min_element(p.begin(), p.end()), p.end());
+        if (p.size() > 2 && p[1] > p.back()) std::reverse(p.begin() + 1, p.end());
+    } else if (p.front() > p.back()) {
+        std::reverse(p.begin(), p.end());
+    }
+    return {std::move(p), closed};
+}
+
+/// The expansion of section 4. What it finds depends on the seed alone, never on what was asked
+/// before: the memo only saves time. One for each thread.
+class Expansion {
+public:
+    Expansion(const Scene& scene, RunMonitor& monitor)
+        : scene_(scene), monitor_(monitor), oracle_(scene), type_oracle_(scene), chain_(scene) {}
+
+    void expand_apex(int apex);
+
+    std::size_t seeds() const { return seeds_; }
+    std::vector<std::pair<CanonicalCycle, TypeSet>>& found() { return found_; }
+
+private:
+    void expand_seed(std::span<const int> seed);
+    bool expand_chain(std::span<const int> four);
+    bool follow(std::span<const int> start);
+    bool follow_path();
+    void add_branch(int left);
+    bool resolve(std::span<const int> sequence, bool closed);
+    bool resolve_once(std::span<const int> chain);
+    bool extend(std::vector<int>& sequence);
+    int side(std::span<const int> chain, int point) const;
+
+    /// Ends tie at every step of an exact row; beyond this length it makes no difference which is first.
+    static constexpr int kLongestBranching = 8;
+
+    using Answer = ChainMemo::Answer;
+    static Answer answer(bool found) { return found ? Answer::yes : Answer::no; }
+
+    struct Branch {
+        std::vector<int> points;
+        std::vector<End> path;
+    };
+
+    const Scene& scene_;
+    RunMonitor& monitor_;
+    ChainOracle oracle_;
+    TypeOracle type_oracle_;
+    ChainMemo memo_;
+    Chain chain_;
+    std::vector<End> path_;  // at which end of chain_ each point after the start was added
+    std::vector<Branch> branches_;
+    std::vector<Candidate> after_;
+    std::vector<Candidate> before_;
+    std::vector<Candidate> fifths_;
+    std::size_t seeds_ = 0;
+    std::vector<std::pair<CanonicalCycle, TypeSet>> found_;
+};
+
+/// Every seed (A, B, C) with B = apex: A and C are at nearly the same distance, so each A looks only
+/// at the few that follow it in B's list by distance.
+void Expansion::expand_apex(int apex) {
+    const auto d = scene_.distances.row(apex);
+    const auto others = scene_.distances.nearest_first(apex);
+    for (std::size_t i = 0; i < others.size(); ++i) {
+        if (scene_.label(others[i]) != scene_.label(apex)) continue;
+        if (monitor_.should_stop()) return;
+        const double near = d[static_cast<std::size_t>(others[i])];
+        for (std::size_t j = i + 1; j < others.size(); ++j) {
+            const double far = d[static_cast<std::size_t>(others[j])];
+            if (far - near > scene_.max_tolerance) break;
+            const auto [a, c] = std::minmax(others[i], others[j]);
+            const int seed[] = {a, apex, c};
+            if (!oracle_.holds(seed, false)) continue;
+            ++seeds_;
+            // An equilateral triangle closes at once; it is met from all three apexes.
+            if (apex < a && oracle_.holds(seed, true)) resolve(seed, true);
+            expand_seed(seed);
+        }
+    }
+}
+
+/// Branches over every fourth point at either end. A path on which nothing is unambiguous and has a type
+/// falls back to the chain of four and then to the seed.
+void Expansion::expand_seed(std::span<const int> seed) {
+    chain_.assign(seed);
+    oracle_.candidates(chain_, End::right, after_);
+    oracle_.candidates(chain_, End::left, before_);
+    bool found = !after_.empty() && !before_.empty();
+    for (const Candidate& fourth : after_) {
+        const int four[] = {seed[0], seed[1], seed[2], fourth.point};
+        found = expand_chain(four) && found;
+    }
+    for (const Candidate& fourth : before_) {
+        const int four[] = {seed[2], seed[1], seed[0], fourth.point};
+        found = expand_chain(four) && found;
+    }
+    if (!found) resolve(seed, false);
+}
+
+/// In 3D also branches over the best fifth point on each side of the plane of points 2 to 4. True if every
+/// branch found a cycle, be it the chain of four itself.
+bool Expansion::expand_chain(std::span<const int> four) {
+    bool found = follow(four);
+    if (scene_.dimension() == 2) return found;
+    chain_.assign(four);
+    oracle_.candidates(chain_, End::right, fifths_);
+    bool taken[3] = {false, false, false};
+    for (const Candidate& fifth : fifths_) {
+        bool& done = taken[side(four, fifth.point) + 1];
+        if (done) continue;
+        done = true;
+        const int five[] = {four[0], four[1], four[2], four[3], fifth.point};
+        if (!follow(five) && !resolve_once(four)) found = false;
+    }
+    return found;
+}
+
+int Expansion::side(std::span<const int> chain, int point) const {
+    const Point& a = scene_.position(chain[1]);
+    const auto from_a = [&](int i) {
+        const Point& p = scene_.position(i);
+        return Point{p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+    };
+    const Point u = from_a(chain[2]), v = from_a(chain[3]), w = from_a(point);
+    const double volume = (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] +
+                          (u[0] * v[1] - u[1] * v[0]) * w[2];
+    return volume > 0 ? 1 : volume < 0 ? -1 : 0;
+}
+
+/// Adds the point of least E_min at either end until the chain closes at no greater tolerance or
+/// nothing fits; keeps the longest chain met that is unambiguous and has a type. True if there is
+/// one on every branch: where both ends are equally good, a chain and its reverse part ways, and both
+/// are followed.
+bool Expansion::follow(std::span<const int> start) {
+    chain_.assign(start);
+    path_.clear();
+    branches_.clear();
+    bool found = follow_path();
+    while (!branches_.empty()) {
+        const Branch branch = std::move(branches_.back());
+        branches_.pop_back();
+        chain_.assign(branch.points);
+        path_ = branch.path;
+        found = follow_path() && found;
+    }
+    return found;
+}
+
+/// One branch, from chain_ on; path_ says how chain_ came from the start. What follows depends on the
+/// chain alone, so chains met before end it.
+bool Expansion::follow_path() {
+    bool found = false;
+    const int known_size = chain_.size();
+    while (true) {
+        if (const auto known = memo_[chain_.points()].path; known != Answer::unknown) {
+            found = known == Answer::yes;
+            break;
+        }
+        if (monitor_.should_stop()) return true;
+        const double closed = oracle_.closed_tolerance(chain_);
+        const Candidate right = oracle_.best_candidate(chain_, End::right);
+        const Candidate left = oracle_.best_candidate(chain_, End::left);
+        const double best = std::min(right.tolerance, left.tolerance);
+        const bool closes = closed <= std::min(best, scene_.max_tolerance);
+        if (closes || best > scene_.max_tolerance) {
+            found = (closes && resolve(chain_.points(), true)) || resolve_once(chain_.points());
+            memo_[chain_.points()].path = answer(found);
+            break;
+        }
+        if (right.tolerance == left.tolerance && chain_.size() <= kLongestBranching) add_branch(left.point);
+        const bool to_right = right.tolerance == best;
+        chain_.add(to_right ? right.point : left.point, to_right ? End::right : End::left);
+        path_.push_back(to_right ? End::right : End::left);
+    }
+    // Back along the path, each chain a window of the last.
+    std::span<const int> window = chain_.points();
+    for (; !path_.empty(); path_.pop_back()) {
+        window = path_.back() == End::right ? window.first(window.size() - 1) : window.subspan(1);
+        if (found && static_cast<int>(window.size()) < known_size) break;
+        found = found || resolve_once(window);
+        if (auto& known = memo_[window].path; known == Answer::unknown) known = answer(found);
+    }
+    return found;
+}
+
+void Expansion::add_branch(int left) {
+    Branch branch;
+    branch.points = {left};
+    const auto points = chain_.points();
+    branch.points.insert(branch.points.end(), points.begin(), points.end());
+    branch.path = path_;
+    branch.path.push_back(End::left);
+    branches_.push_back(std::move(branch));
+}
+
+bool Expansion::resolve_once(std::span<const int> chain) {
+    if (const auto known = memo_[chain].alone; known != Answer::unknown) return known == Answer::yes;
+    const bool found = resolve(chain, false);
+    memo_[chain].alone = answer(found);
+    return found;
+}
+
+/// C2, then C3 by extension, then the types. True if a cycle came out.
+bool Expansion::resolve(std::span<const int> sequence, bool closed) {
+    if (!oracle_.unambiguous(sequence, closed)) return false;
+    std::vector<int> s(sequence.begin(), sequence.end());
+    if (s.front() > s.back()) std::reverse(s.begin(), s.end());
+    while (!closed && extend(s)) closed = oracle_.holds(s, true) && oracle_.unambiguous(s, true);
+    CanonicalCycle cycle = canonical(s, closed);
+    const TypeSet types = type_oracle_.types(cycle.points, closed, oracle_.interval(cycle.points, closed).min);
+    if (types.empty()) return false;
+    found_.emplace_back(std::move(cycle), types);
+    return true;
+}
+
+/// C3: takes the point of least E_min at either end that keeps C1 and C2; ties by the sequence.
+bool Expansion::extend(std::vector<int>& sequence) {
+    Chain chain(scene_);
+    chain.assign(sequence);
+    std::vector<std::pair<double, std::vector<int>>> longer;
+    std::vector<Candidate> fitting;
+    for (const End end : {End::left, End::right}) {
+        oracle_.candidates(chain, end, fitting);
+        for (const Candidate& candidate : fitting) {
+            std::vector<int> s = sequence;
+            s.insert(end == End::left ? s.begin() : s.end(), candidate.point);
+            longer.emplace_back(candidate.tolerance, std::move(s));
+        }
+    }
+    std::sort(longer.begin(), longer.end());
+    for (auto& [tolerance, s] : longer)
+        if (oracle_.unambiguous(s, false)) {
+            sequence = std::move(s);
+            return true;
+        }
+    return false;
+}
+
+}  // namespace
+
+CycleSearchResult detect_cycles(const Scene& scene, RunMonitor& monitor) {
+    monitor.begin_stage("cycles", static_cast<std::size_t>(scene.size()));
+    tbb::enumerable_thread_specific<Expansion> expansions([&] { return Expansion(scene, monitor); });
+    tbb::parallel_for(0, scene.size(), [&](int apex) {
+        expansions.local().expand_apex(apex);
+        monitor.advance();
+    });
+
+    CycleSearchResult result;
+    std::vector<std::pair<CanonicalCycle, TypeSet>> found;
+    for (Expansion& expansion : expansions) {
+        result.seeds += expansion.seeds();
+        std::move(expansion.found().begin(), expansion.found().end(), std::back_inserter(found));
+    }
+    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    found.erase(std::unique(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
+                found.end());
+
+    ChainOracle oracle(scene);
+    result.cycles.reserve(found.size());
+    for (auto& [cycle, types] : found) {
+        const ToleranceInterval tolerance = oracle.interval(cycle.points, cycle.closed);
+        result.cycles.push_back({std::move(cycle.points), cycle.closed, types, tolerance});
+    }
+    return result;
+}
+
+}  // namespace insym

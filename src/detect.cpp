@@ -1,0 +1,133 @@
+#include "insym/detect.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "cycles/detect_cycles.hpp"
+#include "points/diameter.hpp"
+#include "points/merge.hpp"
+#include "ranking/measure.hpp"
+#include "ranking/rank.hpp"
+#include "run_monitor.hpp"
+#include "scene.hpp"
+#include "symmetries/detect_symmetries.hpp"
+
+namespace insym {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void check_options(const DetectOptions& options, const RunContext& context) {
+    const auto refuse = [](const std::string& sentence) { throw Error(ErrorCode::invalid_option, sentence); };
+    if (options.types.empty()) refuse("types: choose at least one kind of symmetry");
+    if (!(options.resolution > 0 && options.resolution < 1))
+        refuse("resolution: must be a share of the diameter above 0 and below 1");
+    if (options.max_tolerance) {
+        if (!(*options.max_tolerance > 0 && *options.max_tolerance <= 1))
+            refuse("max_tolerance: must be a share of the diameter above 0 and at most 1");
+        if (*options.max_tolerance < options.resolution)
+            refuse("max_tolerance: must not be below the resolution");
+    }
+    if (context.threads < 0) refuse("threads: must not be negative");
+}
+
+void check_points(const PointSet& points) {
+    const auto refuse = [](const std::string& sentence) { throw Error(ErrorCode::invalid_input, sentence); };
+    if (points.dimension != 2 && points.dimension != 3) refuse("the dimension of the points must be 2 or 3");
+    if (points.positions.empty()) refuse("no points");
+    if (!points.labels.empty() && points.labels.size() != points.size())
+        refuse("there must be one label for each point, or none");
+    if (!points.entities.empty() && points.entities.size() != points.size())
+        refuse("there must be one entity for each point, or none");
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Point& p = points.positions[i];
+        if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+            refuse("point " + std::to_string(i + 1) + " has a coordinate that is not a finite number");
+        if (points.dimension == 2 && p[2] != 0)
+            refuse("point " + std::to_string(i + 1) + " of a set in the plane has a third coordinate");
+    }
+    if (points.size() == 1) refuse("only one point: a symmetry needs at least two");
+}
+
+/// The share of the diameter up to which chance does not drown what is meant: n scattered points have
+/// of the order of n^4 tau^2 chains of four points by chance; this keeps them of the order of n.
+double automatic_tolerance(int n, double resolution) {
+    constexpr double kPaperTolerance = 0.05;
+    return std::clamp(std::pow(n, -1.5), std::min(10 * resolution, kPaperTolerance), kPaperTolerance);
+}
+
+/// A symmetry of pairs is listed only if it covers the set or rests on four pairs and fixed points, as any
+/// trapezoid's corners make a mirror of two pairs (definitions, section 6).
+bool listed(const Symmetry& s) {
+    return !is_pair_type(s.type) || s.coverage >= 1 || s.cycles.size() + s.fixed_points.size() >= 4;
+}
+
+void measure_all(const Scene& scene, std::vector<Symmetry>& symmetries) {
+    const Measure measure(scene);
+    tbb::parallel_for(std::size_t{0}, symmetries.size(), [&](std::size_t i) { measure.complete(symmetries[i]); });
+    symmetries.erase(std::remove_if(symmetries.begin(), symmetries.end(), [](const Symmetry& s) { return !listed(s); }),
+                     symmetries.end());
+    rank(symmetries);
+}
+
+void run(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
+    const auto start = std::chrono::steady_clock::now();
+    CycleSearchResult search = detect_cycles(scene, monitor);
+    result.cycles = std::move(search.cycles);
+    result.timing.cycles_s = seconds_since(start);
+
+    const auto after_cycles = std::chrono::steady_clock::now();
+    SymmetrySearchResult found = detect_symmetries(scene, result.cycles, options.types, monitor);
+    result.symmetries = std::move(found.symmetries);
+    measure_all(scene, result.symmetries);
+    result.timing.symmetries_s = seconds_since(after_cycles);
+
+    if (found.frustrated > 0)
+        result.diagnostics.push_back({"no_common_direction", std::to_string(found.frustrated) +
+                                                                 " sets of consistent cycles have no common direction and were left out"});
+    result.stats = {search.seeds, result.cycles.size(), result.symmetries.size()};
+}
+
+}  // namespace
+
+DetectResult detect(const PointSet& points, const DetectOptions& options, const RunContext& context) {
+    const auto start = std::chrono::steady_clock::now();
+    check_options(options, context);
+    check_points(points);
+
+    DetectResult result;
+    result.options = options;
+    result.diameter = diameter(points.positions);
+    if (!std::isfinite(result.diameter))
+        throw Error(ErrorCode::invalid_input, "the points are so far apart that their distances overflow");
+    result.resolution = options.resolution * result.diameter;
+    if (!(result.resolution > 0)) throw Error(ErrorCode::invalid_input, "all points are equal");
+
+    result.points = merge_equal_points(points, result.resolution);
+    result.merged_points = static_cast<int>(points.size() - result.points.size());
+    if (result.merged_points > 0)
+        result.diagnostics.push_back({"merged_points", std::to_string(result.merged_points) +
+                                                           " points lay closer than the resolution to another and were merged with it"});
+    const double share = options.max_tolerance ? *options.max_tolerance
+                                               : automatic_tolerance(static_cast<int>(result.points.size()), options.resolution);
+    result.max_tolerance = share * result.diameter;
+
+    RunMonitor monitor(context);
+    tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
+    arena.execute([&] {
+        const Distances distances(result.points.positions);
+        const Scene scene{result.points, distances, result.diameter, result.resolution, result.max_tolerance};
+        run(scene, options, monitor, result);
+    });
+    result.status = monitor.status();
+    result.timing.detect_s = seconds_since(start);
+    return result;
+}
+
+}  // namespace insym

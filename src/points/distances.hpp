@@ -1,0 +1,54 @@
+// All distances of a point set, and for each point the others in order of distance.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "insym/point_set.hpp"
+
+namespace insym {
+
+/// Immutable after construction; reading is thread-safe. Memory 20 n^2 bytes, time O(n^2 log n).
+class Distances {
+public:
+    explicit Distances(const std::vector<Point>& positions);
+
+    int size() const { return n_; }
+    double operator()(int i, int j) const { return row(i)[static_cast<std::size_t>(j)]; }
+
+    /// The distances of point i to all points, by index.
+    std::span<const double> row(int i) const { return {matrix_.data() + start(i, n_), static_cast<std::size_t>(n_)}; }
+    /// All points but i itself, nearest first, equal distances by index.
+    std::span<const int> nearest_first(int i) const {
+        return {order_.data() + start(i, n_ - 1), static_cast<std::size_t>(n_ - 1)};
+    }
+
+    /// Calls visit(point, distance) for every other point whose distance to i is in [low, high], nearest first,
+    /// until it returns false. O(1) to find the first.
+    template <class Visit>
+    void visit_shell(int i, double low, double high, Visit visit) const {
+        const double* d = sorted_.data() + start(i, n_ - 1);
+        const int* point = order_.data() + start(i, n_ - 1);
+        const double place = low * directory_scale_;
+        if (place >= kDirectory) return;
+        int k = place > 0 ? directory_[start(i, kDirectory) + static_cast<std::size_t>(place)] : 0;
+        while (k < n_ - 1 && d[k] < low) ++k;
+        for (; k < n_ - 1 && d[k] <= high; ++k)
+            if (!visit(point[k], d[k])) return;
+    }
+
+private:
+    static constexpr int kDirectory = 64;  // steps of distance whose first points are known
+
+    static std::size_t start(int i, int width) { return static_cast<std::size_t>(i) * static_cast<std::size_t>(width); }
+
+    int n_ = 0;
+    double directory_scale_ = 0;
+    std::vector<double> matrix_;
+    std::vector<double> sorted_;  // the distances in the order of order_
+    std::vector<int> order_;
+    std::vector<int> directory_;  // for each point and step: the first place in its order at or beyond
+};
+
+}  // namespace insym

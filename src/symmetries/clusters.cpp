@@ -1,0 +1,140 @@
+#include "symmetries/clusters.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace insym {
+namespace {
+
+/// Disjoint components that know, beside who they hold, in which direction each member runs relative
+/// to the component's root, and whether the edges agree on it.
+class Components {
+public:
+    Components(std::size_t members, const std::vector<double>& tolerance_max)
+        : parent_(members), reversed_(members, 0), parts_(members) {
+        std::iota(parent_.begin(), parent_.end(), 0);
+        for (std::size_t i = 0; i < members; ++i) {
+            parts_[i].members = {static_cast<int>(i)};
+            parts_[i].top = tolerance_max[i];
+        }
+    }
+
+    struct Part {
+        std::vector<int> members;
+        std::size_t edges = 0;
+        double top = 0;               // the least E_max
+        bool agrees = true;
+        std::vector<int> recorded;    // clusters of this component that no later one holds
+        bool complete() const { return edges == members.size() * (members.size() - 1) / 2; }
+    };
+
+    /// The root of i; sets `reversed` to i's direction relative to it.
+    int root(int i, char& reversed) {
+        reversed = 0;
+        int r = i;
+        for (; parent(r) != r; r = parent(r)) reversed = static_cast<char>(reversed ^ direction(r));
+        // Hang the whole path below the root.
+        char rest = reversed;
+        while (parent(i) != r && i != r) {
+            const int next = parent(i);
+            const char own = direction(i);
+            parent_[static_cast<std::size_t>(i)] = r;
+            reversed_[static_cast<std::size_t>(i)] = rest;
+            rest = static_cast<char>(rest ^ own);
+            i = next;
+        }
+        return r;
+    }
+
+    Part& part(int root) { return parts_[static_cast<std::size_t>(root)]; }
+
+    /// Adds an edge; returns the root of the component that it is in now.
+    int connect(const Consistency& edge) {
+        char a = 0, b = 0;
+        int ra = root(edge.first, a);
+        int rb = root(edge.second, b);
+        const char between = static_cast<char>(a ^ b ^ static_cast<char>(edge.reversed));
+        if (ra == rb) {
+            if (between != 0) part(ra).agrees = false;
+        } else {
+            if (part(ra).members.size() < part(rb).members.size()) std::swap(ra, rb);
+            parent_[static_cast<std::size_t>(rb)] = ra;
+            reversed_[static_cast<std::size_t>(rb)] = between;
+            absorb(part(ra), part(rb));
+        }
+        ++part(ra).edges;
+        return ra;
+    }
+
+private:
+    int parent(int i) const { return parent_[static_cast<std::size_t>(i)]; }
+    char direction(int i) const { return reversed_[static_cast<std::size_t>(i)]; }
+
+    static void absorb(Part& into, Part& from) {
+        into.members.insert(into.members.end(), from.members.begin(), from.members.end());
+        into.recorded.insert(into.recorded.end(), from.recorded.begin(), from.recorded.end());
+        into.edges += from.edges;
+        into.top = std::min(into.top, from.top);
+        into.agrees = into.agrees && from.agrees;
+        from = Part{};
+    }
+
+    std::vector<int> parent_;
+    std::vector<char> reversed_;
+    std::vector<Part> parts_;
+};
+
+}  // namespace
+
+Clustering complete_components(std::size_t members, std::vector<Consistency> edges,
+                               const std::vector<double>& tolerance_max, double resolution) {
+    std::sort(edges.begin(), edges.end(), [](const Consistency& a, const Consistency& b) {
+        return std::tie(a.tolerance, a.first, a.second) < std::tie(b.tolerance, b.first, b.second);
+    });
+    Components components(members, tolerance_max);
+    Clustering result;
+    result.clustered.assign(members, 0);
+
+    const auto record = [&](int root, double tolerance) {
+        Components::Part& part = components.part(root);
+        if (!part.complete() || !(tolerance < part.top)) return;
+        if (!part.agrees) {
+            ++result.frustrated;
+            return;
+        }
+        Cluster cluster;
+        cluster.tolerance = tolerance;
+        cluster.members = part.members;
+        std::sort(cluster.members.begin(), cluster.members.end());
+        char first = 0;
+        components.root(cluster.members.front(), first);
+        for (const int m : cluster.members) {
+            char own = 0;
+            components.root(m, own);
+            cluster.reversed.push_back(static_cast<char>(own ^ first));
+            result.clustered[static_cast<std::size_t>(m)] = 1;
+        }
+        for (const int inner : part.recorded) result.clusters[static_cast<std::size_t>(inner)].maximal = false;
+        part.recorded = {static_cast<int>(result.clusters.size())};
+        result.clusters.push_back(std::move(cluster));
+    };
+
+    std::vector<int> touched;
+    for (std::size_t k = 0; k < edges.size();) {
+        const double level = edges[k].tolerance;
+        touched.clear();
+        for (; k < edges.size() && edges[k].tolerance <= level + resolution; ++k)
+            touched.push_back(components.connect(edges[k]));
+        for (int& t : touched) {
+            char ignored = 0;
+            t = components.root(t, ignored);
+        }
+        std::sort(touched.begin(), touched.end());
+        touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+        for (const int root : touched) record(root, edges[k - 1].tolerance);
+    }
+    return result;
+}
+
+}  // namespace insym

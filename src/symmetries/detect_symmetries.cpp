@@ -1,0 +1,78 @@
+#include "symmetries/detect_symmetries.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "symmetries/clusters.hpp"
+#include "symmetries/consistency.hpp"
+#include "symmetries/pairs.hpp"
+
+namespace insym {
+namespace {
+
+constexpr SymmetryType kCycleTypes[] = {SymmetryType::rotation, SymmetryType::translation,
+                                        SymmetryType::glide_reflection, SymmetryType::rotation_reflection,
+                                        SymmetryType::screw};
+
+Symmetry from_cycle(SymmetryType type, const Cycle& cycle, bool maximal) {
+    Symmetry symmetry;
+    symmetry.type = type;
+    symmetry.cycles = {{cycle.points, cycle.closed}};
+    symmetry.tolerance = cycle.tolerance;
+    symmetry.maximal = maximal;
+    return symmetry;
+}
+
+Symmetry from_cluster(SymmetryType type, const Cluster& cluster, const std::vector<const Cycle*>& members) {
+    Symmetry symmetry;
+    symmetry.type = type;
+    symmetry.maximal = cluster.maximal;
+    symmetry.tolerance = {cluster.tolerance, std::numeric_limits<double>::infinity()};
+    for (std::size_t k = 0; k < cluster.members.size(); ++k) {
+        const Cycle& cycle = *members[static_cast<std::size_t>(cluster.members[k])];
+        Orbit orbit{cycle.points, cycle.closed};
+        if (cluster.reversed[k] != 0) std::reverse(orbit.points.begin(), orbit.points.end());
+        symmetry.cycles.push_back(std::move(orbit));
+        symmetry.tolerance.max = std::min(symmetry.tolerance.max, cycle.tolerance.max);
+    }
+    return symmetry;
+}
+
+void add_of_type(const Scene& scene, const std::vector<Cycle>& cycles, SymmetryType type, RunMonitor& monitor,
+                 SymmetrySearchResult& result) {
+    std::vector<const Cycle*> members;
+    for (const Cycle& c : cycles)
+        if (c.types.contains(type)) members.push_back(&c);
+    if (members.empty()) return;
+
+    std::vector<double> tolerance_max;
+    for (const Cycle* c : members) tolerance_max.push_back(c->tolerance.max);
+    const Clustering clustering = complete_components(
+        members.size(), consistent_cycles(scene, members, type, monitor), tolerance_max, scene.resolution);
+    result.frustrated += clustering.frustrated;
+    for (std::size_t m = 0; m < members.size(); ++m)
+        result.symmetries.push_back(from_cycle(type, *members[m], clustering.clustered[m] == 0));
+    for (const Cluster& c : clustering.clusters) result.symmetries.push_back(from_cluster(type, c, members));
+}
+
+Symmetry from_pairs(const PairCluster& cluster) {
+    Symmetry symmetry;
+    symmetry.type = cluster.type;
+    symmetry.maximal = cluster.maximal;
+    symmetry.tolerance = {cluster.tolerance, std::numeric_limits<double>::infinity()};
+    for (const Pair& p : cluster.pairs) symmetry.cycles.push_back({{p.first, p.second}, true});
+    return symmetry;
+}
+
+}  // namespace
+
+SymmetrySearchResult detect_symmetries(const Scene& scene, const std::vector<Cycle>& cycles, TypeSet types,
+                                       RunMonitor& monitor) {
+    SymmetrySearchResult result;
+    for (const SymmetryType type : kCycleTypes)
+        if (types.contains(type)) add_of_type(scene, cycles, type, monitor, result);
+    for (const PairCluster& cluster : detect_pairs(scene, types, monitor)) result.symmetries.push_back(from_pairs(cluster));
+    return result;
+}
+
+}  // namespace insym
