@@ -62,6 +62,13 @@ double automatic_tolerance(int n, double resolution) {
     return std::clamp(std::pow(n, -1.5), std::min(10 * resolution, kPaperTolerance), kPaperTolerance);
 }
 
+TypeSet cycle_types() {
+    TypeSet types;
+    for (const SymmetryType type : kAllSymmetryTypes)
+        if (!is_pair_type(type)) types.insert(type);
+    return types;
+}
+
 /// A symmetry of pairs is listed only if it covers the set or rests on four pairs and fixed points, as any
 /// trapezoid's corners make a mirror of two pairs (definitions, section 6).
 bool listed(const Symmetry& s) {
@@ -71,15 +78,17 @@ bool listed(const Symmetry& s) {
 void measure_all(const Scene& scene, std::vector<Symmetry>& symmetries) {
     const Measure measure(scene);
     tbb::parallel_for(std::size_t{0}, symmetries.size(), [&](std::size_t i) { measure.complete(symmetries[i]); });
-    symmetries.erase(std::remove_if(symmetries.begin(), symmetries.end(), [](const Symmetry& s) { return !listed(s); }),
-                     symmetries.end());
+    std::erase_if(symmetries, [](const Symmetry& s) { return !listed(s); });
     rank(symmetries);
 }
 
 void run(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
     const auto start = std::chrono::steady_clock::now();
-    CycleSearchResult search = detect_cycles(scene, monitor);
+    // Pairs need no cycles; a run that asks for pairs alone does not pay for them.
+    CycleSearchResult search;
+    if (!(options.types & cycle_types()).empty()) search = detect_cycles(scene, monitor);
     result.cycles = std::move(search.cycles);
+    std::erase_if(result.cycles, [&](const Cycle& c) { return (c.types & options.types).empty(); });
     result.timing.cycles_s = seconds_since(start);
 
     const auto after_cycles = std::chrono::steady_clock::now();

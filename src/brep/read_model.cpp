@@ -98,7 +98,9 @@ std::string in_one_line(const char* message) {
     std::istringstream words(message);
     std::string line;
     for (std::string word; words >> word;) line += line.empty() ? word : " " + word;
-    return line;
+    constexpr std::string_view kSyntax = "Undefined Parsing: Line ";
+    // Open CASCADE 7.6 counts one line too many, so the number is no more than near.
+    return line.starts_with(kSyntax) ? "near line " + line.substr(kSyntax.size()) : line;
 }
 
 /// What is wrong with one item of the model's geometry or topology. Open CASCADE notes wrong parameters and

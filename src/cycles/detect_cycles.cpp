@@ -35,7 +35,7 @@ CanonicalCycle canonical(std::span<const int> sequence, bool closed) {
 class Expansion {
 public:
     Expansion(const Scene& scene, RunMonitor& monitor)
-        : scene_(scene), monitor_(monitor), oracle_(scene), type_oracle_(scene), chain_(scene) {}
+        : scene_(scene), monitor_(monitor), oracle_(scene), type_oracle_(scene), chain_(scene), extended_(scene) {}
 
     void expand_apex(int apex);
 
@@ -48,8 +48,9 @@ private:
     bool follow(std::span<const int> start);
     bool follow_path();
     void add_branch(int left);
-    bool resolve(std::span<const int> sequence, bool closed);
-    bool resolve_once(std::span<const int> chain);
+    bool resolve_open(std::span<const int> chain);
+    bool resolve_closed(std::span<const int> ring);
+    bool keep(std::span<const int> sequence, bool closed);
     bool extend(std::vector<int>& sequence);
     int side(std::span<const int> chain, int point) const;
 
@@ -75,6 +76,8 @@ private:
     std::vector<Candidate> after_;
     std::vector<Candidate> before_;
     std::vector<Candidate> fifths_;
+    Chain extended_;
+    std::vector<Candidate> extensions_;
     std::size_t seeds_ = 0;
     std::vector<std::pair<CanonicalCycle, TypeSet>> found_;
 };
@@ -96,7 +99,7 @@ void Expansion::expand_apex(int apex) {
             if (!oracle_.holds(seed, false)) continue;
             ++seeds_;
             // An equilateral triangle closes at once; it is met from all three apexes.
-            if (apex < a && oracle_.holds(seed, true)) resolve(seed, true);
+            if (apex < a && oracle_.holds(seed, true)) resolve_closed(seed);
             expand_seed(seed);
         }
     }
@@ -117,7 +120,7 @@ void Expansion::expand_seed(std::span<const int> seed) {
         const int four[] = {seed[2], seed[1], seed[0], fourth.point};
         found = expand_chain(four) && found;
     }
-    if (!found) resolve(seed, false);
+    if (!found) resolve_open(seed);
 }
 
 /// In 3D also branches over the best fifth point on each side of the plane of points 2 to 4. True if every
@@ -133,7 +136,7 @@ bool Expansion::expand_chain(std::span<const int> four) {
         if (done) continue;
         done = true;
         const int five[] = {four[0], four[1], four[2], four[3], fifth.point};
-        if (!follow(five) && !resolve_once(four)) found = false;
+        if (!follow(five) && !resolve_open(four)) found = false;
     }
     return found;
 }
@@ -186,7 +189,7 @@ bool Expansion::follow_path() {
         const double best = std::min(right.tolerance, left.tolerance);
         const bool closes = closed <= std::min(best, scene_.max_tolerance);
         if (closes || best > scene_.max_tolerance) {
-            found = (closes && resolve(chain_.points(), true)) || resolve_once(chain_.points());
+            found = (closes && resolve_closed(chain_.points())) || resolve_open(chain_.points());
             memo_[chain_.points()].path = answer(found);
             break;
         }
@@ -200,7 +203,7 @@ bool Expansion::follow_path() {
     for (; !path_.empty(); path_.pop_back()) {
         window = path_.back() == End::right ? window.first(window.size() - 1) : window.subspan(1);
         if (found && static_cast<int>(window.size()) < known_size) break;
-        found = found || resolve_once(window);
+        found = found || resolve_open(window);
         if (auto& known = memo_[window].path; known == Answer::unknown) known = answer(found);
     }
     return found;
@@ -216,20 +219,39 @@ void Expansion::add_branch(int left) {
     branches_.push_back(std::move(branch));
 }
 
-bool Expansion::resolve_once(std::span<const int> chain) {
+/// C2, then C3 by extension, then the types. True if a cycle came out. Each longer chain met on the way
+/// would come to the same end, so one answer serves them all.
+bool Expansion::resolve_open(std::span<const int> chain) {
     if (const auto known = memo_[chain].alone; known != Answer::unknown) return known == Answer::yes;
-    const bool found = resolve(chain, false);
+    std::vector<int> s(chain.begin(), chain.end());
+    if (s.front() > s.back()) std::reverse(s.begin(), s.end());
+    std::vector<std::vector<int>> passed;
+    bool found = false;
+    for (bool open = oracle_.unambiguous(s, false); open;) {
+        passed.push_back(s);
+        if (!extend(s)) {
+            found = keep(s, false);
+            open = false;
+        } else if (oracle_.holds(s, true) && oracle_.unambiguous(s, true)) {
+            found = keep(s, true);
+            open = false;
+        } else if (const auto known = memo_[s].alone; known != Answer::unknown) {
+            found = known == Answer::yes;
+            open = false;
+        }
+    }
     memo_[chain].alone = answer(found);
+    for (const std::vector<int>& p : passed) memo_[p].alone = answer(found);
     return found;
 }
 
-/// C2, then C3 by extension, then the types. True if a cycle came out.
-bool Expansion::resolve(std::span<const int> sequence, bool closed) {
-    if (!oracle_.unambiguous(sequence, closed)) return false;
-    std::vector<int> s(sequence.begin(), sequence.end());
-    if (s.front() > s.back()) std::reverse(s.begin(), s.end());
-    while (!closed && extend(s)) closed = oracle_.holds(s, true) && oracle_.unambiguous(s, true);
-    CanonicalCycle cycle = canonical(s, closed);
+bool Expansion::resolve_closed(std::span<const int> ring) {
+    return oracle_.unambiguous(ring, true) && keep(ring, true);
+}
+
+/// Adds the cycle if it has a type.
+bool Expansion::keep(std::span<const int> sequence, bool closed) {
+    CanonicalCycle cycle = canonical(sequence, closed);
     const TypeSet types = type_oracle_.types(cycle.points, closed, oracle_.interval(cycle.points, closed).min);
     if (types.empty()) return false;
     found_.emplace_back(std::move(cycle), types);
@@ -238,13 +260,11 @@ bool Expansion::resolve(std::span<const int> sequence, bool closed) {
 
 /// C3: takes the point of least E_min at either end that keeps C1 and C2; ties by the sequence.
 bool Expansion::extend(std::vector<int>& sequence) {
-    Chain chain(scene_);
-    chain.assign(sequence);
+    extended_.assign(sequence);
     std::vector<std::pair<double, std::vector<int>>> longer;
-    std::vector<Candidate> fitting;
     for (const End end : {End::left, End::right}) {
-        oracle_.candidates(chain, end, fitting);
-        for (const Candidate& candidate : fitting) {
+        oracle_.candidates(extended_, end, extensions_);
+        for (const Candidate& candidate : extensions_) {
             std::vector<int> s = sequence;
             s.insert(end == End::left ? s.begin() : s.end(), candidate.point);
             longer.emplace_back(candidate.tolerance, std::move(s));

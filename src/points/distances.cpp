@@ -11,12 +11,13 @@ namespace insym {
 
 Distances::Distances(const std::vector<Point>& positions)
     : n_(static_cast<int>(positions.size())),
+      steps_(std::max(n_, 16)),
       // Every distance falls inside the directory, the diameter just so.
-      directory_scale_(kDirectory / (diameter(positions) * (1 + 1e-9))),
+      directory_scale_(steps_ / (diameter(positions) * (1 + 1e-9))),
       matrix_(start(n_, n_)),
       sorted_(start(n_, n_ - 1)),
       order_(start(n_, n_ - 1)),
-      directory_(start(n_, kDirectory)) {
+      directory_(start(n_, steps_)) {
     tbb::parallel_for(0, n_, [&](int i) {
         double* out = matrix_.data() + start(i, n_);
         for (std::size_t j = 0; j < positions.size(); ++j)
@@ -29,13 +30,13 @@ Distances::Distances(const std::vector<Point>& positions)
                   [out](int a, int b) { return out[a] != out[b] ? out[a] < out[b] : a < b; });
 
         double* sorted = sorted_.data() + start(i, n_ - 1);
-        int* directory = directory_.data() + start(i, kDirectory);
+        int* directory = directory_.data() + start(i, steps_);
         int step = 0;
         for (int k = 0; k < n_ - 1; ++k) {
             sorted[k] = out[others[k]];
-            for (; step < kDirectory && step <= sorted[k] * directory_scale_; ++step) directory[step] = k;
+            for (; step < steps_ && step <= sorted[k] * directory_scale_; ++step) directory[step] = k;
         }
-        for (; step < kDirectory; ++step) directory[step] = n_ - 1;
+        for (; step < steps_; ++step) directory[step] = n_ - 1;
     });
 }
 

@@ -9,7 +9,7 @@
 
 namespace insym {
 
-/// Immutable after construction; reading is thread-safe. Memory 20 n^2 bytes, time O(n^2 log n).
+/// Immutable after construction; reading is thread-safe. Memory 24 n^2 bytes, time O(n^2 log n).
 class Distances {
 public:
     explicit Distances(const std::vector<Point>& positions);
@@ -31,19 +31,18 @@ public:
         const double* d = sorted_.data() + start(i, n_ - 1);
         const int* point = order_.data() + start(i, n_ - 1);
         const double place = low * directory_scale_;
-        if (place >= kDirectory) return;
-        int k = place > 0 ? directory_[start(i, kDirectory) + static_cast<std::size_t>(place)] : 0;
+        if (place >= steps_) return;
+        int k = place > 0 ? directory_[start(i, steps_) + static_cast<std::size_t>(place)] : 0;
         while (k < n_ - 1 && d[k] < low) ++k;
         for (; k < n_ - 1 && d[k] <= high; ++k)
             if (!visit(point[k], d[k])) return;
     }
 
 private:
-    static constexpr int kDirectory = 64;  // steps of distance whose first points are known
-
     static std::size_t start(int i, int width) { return static_cast<std::size_t>(i) * static_cast<std::size_t>(width); }
 
     int n_ = 0;
+    int steps_ = 0;  // of distance, whose first points are known: about one for each point
     double directory_scale_ = 0;
     std::vector<double> matrix_;
     std::vector<double> sorted_;  // the distances in the order of order_

@@ -99,18 +99,27 @@ public:
         }
     }
 
-    /// Where it is: axis, plane, centre or direction.
+    /// Where it is: axis, plane, centre or direction, whichever its type is known by.
     std::string place() const {
         const Isometry& f = symmetry_.isometry;
-        std::string text;
-        const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
-        if (f.axis) add("axis " + direction(f.axis->direction) + " through " + position(f.axis->point));
-        if (f.plane && !f.axis) add(plane(*f.plane));
-        if (f.center) add("centre " + position(*f.center));
-        if (symmetry_.type == SymmetryType::translation) add("along " + direction(f.translation));
-        if (symmetry_.type == SymmetryType::glide_reflection && f.plane)
-            add("along " + direction(across(f.translation, f.plane->normal)));
-        return text;
+        const std::string axis =
+            f.axis ? "axis " + direction(f.axis->direction) + " through " + position(f.axis->point) : "";
+        std::string center = f.center ? "centre " + position(*f.center) : "";
+        std::string mirror = f.plane ? plane(*f.plane) : "";
+        switch (symmetry_.type) {
+            case SymmetryType::mirror:
+                return mirror;
+            case SymmetryType::glide_reflection:
+                return f.plane ? mirror + ", along " + direction(across(f.translation, f.plane->normal)) : "";
+            case SymmetryType::translation:
+                return "along " + direction(f.translation);
+            case SymmetryType::inversion:
+                return center;
+            case SymmetryType::rotation_reflection:
+                return axis + ", " + center;
+            default:
+                return f.axis ? axis : center;  // in 2D a rotation has a centre
+        }
     }
 
 private:

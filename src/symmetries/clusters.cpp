@@ -23,6 +23,7 @@ public:
     struct Part {
         std::vector<int> members;
         std::size_t edges = 0;
+        double tolerance = 0;         // the largest of its edges
         double top = 0;               // the least E_max
         bool agrees = true;
         std::vector<int> recorded;    // clusters of this component that no later one holds
@@ -64,6 +65,7 @@ public:
             absorb(part(ra), part(rb));
         }
         ++part(ra).edges;
+        part(ra).tolerance = std::max(part(ra).tolerance, edge.tolerance);
         return ra;
     }
 
@@ -75,6 +77,7 @@ private:
         into.members.insert(into.members.end(), from.members.begin(), from.members.end());
         into.recorded.insert(into.recorded.end(), from.recorded.begin(), from.recorded.end());
         into.edges += from.edges;
+        into.tolerance = std::max(into.tolerance, from.tolerance);
         into.top = std::min(into.top, from.top);
         into.agrees = into.agrees && from.agrees;
         from = Part{};
@@ -96,15 +99,15 @@ Clustering complete_components(std::size_t members, std::vector<Consistency> edg
     Clustering result;
     result.clustered.assign(members, 0);
 
-    const auto record = [&](int root, double tolerance) {
+    const auto record = [&](int root, double level) {
         Components::Part& part = components.part(root);
-        if (!part.complete() || !(tolerance < part.top)) return;
+        if (!part.complete() || !(level < part.top)) return;
         if (!part.agrees) {
             ++result.frustrated;
             return;
         }
         Cluster cluster;
-        cluster.tolerance = tolerance;
+        cluster.tolerance = part.tolerance;
         cluster.members = part.members;
         std::sort(cluster.members.begin(), cluster.members.end());
         char first = 0;

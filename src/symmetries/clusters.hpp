@@ -9,7 +9,7 @@ namespace insym {
 
 /// A set of mutually consistent members.
 struct Cluster {
-    double tolerance = 0;        ///< the largest E_min of its pairs, ties within the resolution together
+    double tolerance = 0;        ///< the largest E_min of its pairs
     std::vector<int> members;    ///< ascending
     std::vector<char> reversed;  ///< for each member: runs backwards, seen from the first
     bool maximal = true;         ///< no later component of the list holds it

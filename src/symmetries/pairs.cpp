@@ -5,10 +5,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 #include "isometry/fit.hpp"
+#include "points/point_grid.hpp"
 #include "symmetries/clusters.hpp"
 
 namespace insym {
@@ -17,12 +17,17 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// A second pair whose cross distances with the first match.
+/// A single pair needs as many fixed points to be listed (definitions, section 6).
+constexpr int kLeastForLonePair = 3;
+
+/// Half-turns are looked for at max_tolerance and at steps of this factor below it.
+constexpr double kLadder = 10;
+
+/// A later pair whose cross distances with the pair at hand match, as by a half-turn.
 struct Match {
-    Pair pair;              // as {image of the smaller side, ...}: first is P1's counterpart
-    double tolerance = 0;   // E_min of the union
-    bool half_turn = false;
-    double reach = 0;       // distance of the middles: how well the two fix an axis
+    Pair pair;             // in the order of the pair at hand: its first point's counterpart first
+    double tolerance = 0;  // E_min of the union
+    double reach = 0;      // distance of the middles: how well the two fix an axis
 };
 
 /// How far the least-squares M, I and half-turn of two pairs leave their points (all four links).
@@ -77,132 +82,145 @@ struct Findings {
     std::vector<PairCluster> half_turns;
 };
 
-/// Looks at one pair after another; one for each thread.
+/// Looks for the partners (q, image) of the pairs (P1, P2) with one first point: |P1 q| = |P2 image| and
+/// |P2 q| = |P1 image|, each within the cap. Only later points count, so each two pairs meet once.
 class PairSearch {
 public:
-    PairSearch(const Scene& scene, TypeSet types) : scene_(scene), types_(types) {}
+    PairSearch(const Scene& scene, const PointGrid& grid, TypeSet types, int first, Findings& out);
 
-    void search(const Pair& pair, Findings& out) {
-        pair_ = pair;
-        a_ = scene_.distances.row(pair.first);
-        b_ = scene_.distances.row(pair.second);
-        chord_ = a_[index(pair.second)];
-        collect_matches(out);
-        if (types_.contains(SymmetryType::half_turn) && scene_.dimension() == 3) group_by_axis(out.half_turns);
-    }
+    void search(int second);
 
 private:
     static std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
     Vector3d at(int i) const { return to_vector(scene_.position(i)); }
 
-    void collect_matches(Findings& out);
-    void examine(int q, int image, Findings& out);
-    void group_by_axis(std::vector<PairCluster>& out);
-    void group_at(double level, std::vector<PairCluster>& out);
+    void collect_matches();
+    void examine(int q, int image, double tolerance);
+    int points_on_own_plane() const;
+    void group_by_axis();
+    void group_at(double level);
+    void report_group(double level, const Vector3d& middle, const Vector3d& axis);
     bool exchange(const Pair& p, const Pair& q, double level) const;
-    int points_on_axis(const Vector3d& middle, const Vector3d& axis, double reach) const;
+    bool smaller_pair_turns(const Vector3d& middle, const Vector3d& axis, double reach, double level) const;
+    int points_on_axis(const Vector3d& middle, const Vector3d& axis, double reach);
 
     const Scene& scene_;
+    const PointGrid& grid_;
     TypeSet types_;
+    Findings& out_;
     Pair pair_;
     std::span<const double> a_;  // distances to the first point of the pair
     std::span<const double> b_;  // and to the second
-    double chord_ = 0;
-    std::vector<int> near_first_;
-    std::vector<int> near_second_;
-    std::vector<int> middle_;  // points at nearly equal distances from both
+
+    // The later points with the first one's label, nearest to it first, and a directory of their distances.
+    std::vector<int> later_;
+    std::vector<double> later_a_;
+    std::vector<int> directory_;
+    double directory_scale_ = 0;
+
+    std::vector<int> leaning_;  // places in later_ of the points at the first one's side
+    std::vector<int> between_;  // points at nearly equal distances from both
+    bool between_known_ = false;
     std::vector<Match> matches_;
     std::vector<const Match*> usable_;
     std::vector<const Match*> group_;
 };
 
-/// A pair (q, image) matches if |P1 q| = |P2 image| and |P2 q| = |P1 image|, each within the cap. One
-/// list in order of |P1 q|, the other of |P2 image|, and a window that slides over both.
-void PairSearch::collect_matches(Findings& out) {
-    const double cap = scene_.max_tolerance;
-    near_first_.clear();
-    near_second_.clear();
-    middle_.clear();
-    matches_.clear();
-    int on_plane = 0;
-    for (const int q : scene_.distances.nearest_first(pair_.first)) {
-        const double difference = a_[index(q)] - b_[index(q)];
-        if (difference > cap || q == pair_.second) continue;
-        near_first_.push_back(q);
-        if (difference < -cap) continue;
-        middle_.push_back(q);
-        // The mirror of the pair alone moves q by |a^2 - b^2| / chord.
-        if (std::abs(difference) * (a_[index(q)] + b_[index(q)]) <= scene_.resolution * chord_) ++on_plane;
-    }
-    for (const int q : scene_.distances.nearest_first(pair_.second))
-        if (b_[index(q)] - a_[index(q)] <= cap && q != pair_.first) near_second_.push_back(q);
+PairSearch::PairSearch(const Scene& scene, const PointGrid& grid, TypeSet types, int first, Findings& out)
+    : scene_(scene), grid_(grid), types_(types), out_(out), pair_{first, first}, a_(scene.distances.row(first)) {
+    for (const int q : scene.distances.nearest_first(first))
+        if (q > first && scene.label(q) == scene.label(first)) later_.push_back(q);
+    for (const int q : later_) later_a_.push_back(a_[index(q)]);
+    const std::size_t steps = later_.size() + 1;
+    directory_scale_ = static_cast<double>(steps) / (scene.diameter * (1 + 1e-9));
+    directory_.assign(steps + 1, static_cast<int>(later_.size()));
+    for (std::size_t k = later_.size(); k-- > 0;)
+        directory_[static_cast<std::size_t>(later_a_[k] * directory_scale_)] = static_cast<int>(k);
+    for (std::size_t k = steps; k-- > 0;) directory_[k] = std::min(directory_[k], directory_[k + 1]);
+    leaning_.resize(later_.size());
+}
 
-    bool lone = true;
-    std::size_t window = 0;
-    for (const int q : near_first_) {
-        while (window < near_second_.size() && b_[index(near_second_[window])] < a_[index(q)] - cap) ++window;
-        for (std::size_t k = window; k < near_second_.size(); ++k) {
-            const int image = near_second_[k];
-            if (b_[index(image)] > a_[index(q)] + cap) break;
-            if (std::abs(b_[index(q)] - a_[index(image)]) > cap || q == image) continue;
-            if (scene_.label(q) != scene_.label(image)) continue;
-            // Each pair once: the end that leans more to the first point comes first.
-            const double lean = a_[index(q)] - b_[index(q)], other = a_[index(image)] - b_[index(image)];
-            if (lean > other || (lean == other && q > image)) continue;
-            const std::size_t before = out.mirror_edges.size();
-            examine(q, image, out);
-            if (out.mirror_edges.size() > before && out.mirror_edges.back().tolerance <= 2 * scene_.resolution)
-                lone = false;
+void PairSearch::search(int second) {
+    pair_.second = second;
+    b_ = scene_.distances.row(second);
+    between_known_ = false;
+    matches_.clear();
+    collect_matches();
+    if (types_.contains(SymmetryType::mirror) && points_on_own_plane() >= kLeastForLonePair)
+        out_.lone_mirrors.push_back(pair_);
+    if (types_.contains(SymmetryType::half_turn) && scene_.dimension() == 3) group_by_axis();
+}
+
+void PairSearch::collect_matches() {
+    const double cap = scene_.max_tolerance;
+    // Of q and its image one leans to the first point: q. Stored without a branch, which would be a coin toss.
+    std::size_t leaning = 0;
+    for (std::size_t k = 0; k < later_.size(); ++k) {
+        leaning_[leaning] = static_cast<int>(k);
+        leaning += later_a_[k] - b_[index(later_[k])] <= cap ? 1 : 0;
+    }
+    for (std::size_t l = 0; l < leaning; ++l) {
+        const int q = later_[index(leaning_[l])];
+        const double a = a_[index(q)], b = b_[index(q)];
+        if (q == pair_.second) continue;
+        // The image is as far from the first point as q is from the second.
+        std::size_t k = static_cast<std::size_t>(directory_[static_cast<std::size_t>(std::max(0.0, b - cap) * directory_scale_)]);
+        for (; k < later_.size() && later_a_[k] <= b + cap; ++k) {
+            const int image = later_[k];
+            const double other_b = b_[index(image)];
+            if (later_a_[k] < b - cap || std::abs(a - other_b) > cap || image == q || image == pair_.second) continue;
+            const double lean = a - b, other_lean = later_a_[k] - other_b;
+            if (lean > other_lean || (lean == other_lean && q > image)) continue;
+            examine(q, image, std::max({scene_.resolution, std::abs(a - other_b), std::abs(b - later_a_[k])}));
         }
     }
-    if (types_.contains(SymmetryType::mirror) && lone && on_plane >= 3) out.lone_mirrors.push_back(pair_);
 }
 
 /// Decides of which types the union of the pair and (q, image) is.
-void PairSearch::examine(int q, int image, Findings& out) {
+void PairSearch::examine(int q, int image, double tolerance) {
     const Vector3d p1 = at(pair_.first), p2 = at(pair_.second), q1 = at(q), q2 = at(image);
     const Vector3d u = (p2 - p1) / 2, v = (q2 - q1) / 2, w = (q1 + q2) / 2 - (p1 + p2) / 2;
-    const double tolerance = std::max({scene_.resolution, std::abs(a_[index(q)] - b_[index(image)]),
-                                       std::abs(b_[index(q)] - a_[index(image)])});
     const TwoPairFit fit = fit_two_pairs(u, v, w, scene_.dimension());
     const double limit = std::min(
         scene_.max_tolerance, 2 * std::min({fit.mirror, fit.inversion, fit.half_turn}) + scene_.resolution);
     const Pair other = {std::min(q, image), std::max(q, image)};
-    if (fit.mirror <= limit) {
-        // Also towards smaller pairs, so that a lone mirror is known as such; these are dropped later.
-        out.mirror_edges.push_back({tolerance, pair_, other});
-    }
+    if (types_.contains(SymmetryType::mirror) && fit.mirror <= limit)
+        out_.mirror_edges.push_back({tolerance, pair_, other});
     const SymmetryType central = scene_.dimension() == 3 ? SymmetryType::inversion : SymmetryType::half_turn;
-    if (types_.contains(central) && fit.inversion <= limit && pair_ < other)
-        out.central_edges.push_back({tolerance, pair_, other});
-    if (fit.half_turn <= limit && scene_.dimension() == 3)
-        matches_.push_back({{q, image}, tolerance, true, w.norm()});
+    if (types_.contains(central) && fit.inversion <= limit) out_.central_edges.push_back({tolerance, pair_, other});
+    if (fit.half_turn <= limit && scene_.dimension() == 3) matches_.push_back({{q, image}, tolerance, w.norm()});
+}
+
+/// The mirror of the pair alone moves q by |a^2 - b^2| / |P1 P2|.
+int PairSearch::points_on_own_plane() const {
+    const double limit = scene_.resolution * a_[index(pair_.second)];
+    int count = 0;
+    for (std::size_t q = 0; q < a_.size(); ++q)
+        count += std::abs((a_[q] - b_[q]) * (a_[q] + b_[q])) <= limit ? 1 : 0;
+    return count;
 }
 
 /// Half-turns: the largest sets of mutually consistent pairs about one axis, at a ladder of tolerances
 /// so that an exact axis is not lost in the approximate one around it.
-void PairSearch::group_by_axis(std::vector<PairCluster>& out) {
+void PairSearch::group_by_axis() {
     // Best fixed axes first: those through far middles.
     std::sort(matches_.begin(), matches_.end(), [](const Match& x, const Match& y) {
         return x.reach != y.reach ? x.reach > y.reach : x.pair < y.pair;
     });
-    constexpr double kLadder = 10;
     std::size_t last = 0;
     for (double level = scene_.max_tolerance;; level = std::max(level / kLadder, scene_.resolution)) {
-        const auto below = [&](const Match& m) { return m.tolerance <= level; };
-        const auto count = static_cast<std::size_t>(std::count_if(matches_.begin(), matches_.end(), below));
-        if (count == 0) return;
-        if (count != last) group_at(level, out);
-        last = count;
+        usable_.clear();
+        for (const Match& m : matches_)
+            if (m.tolerance <= level) usable_.push_back(&m);
+        if (usable_.empty()) return;
+        if (usable_.size() != last) group_at(level);
+        last = usable_.size();
         if (level <= scene_.resolution) return;
     }
 }
 
-void PairSearch::group_at(double level, std::vector<PairCluster>& out) {
-    usable_.clear();
-    for (const Match& m : matches_)
-        if (m.tolerance <= level) usable_.push_back(&m);
+void PairSearch::group_at(double level) {
     const Vector3d p = (at(pair_.first) + at(pair_.second)) / 2, u = (at(pair_.second) - at(pair_.first)) / 2;
     std::vector<char> explained(usable_.size(), 0);
     for (std::size_t k = 0; k < usable_.size(); ++k) {
@@ -213,50 +231,46 @@ void PairSearch::group_at(double level, std::vector<PairCluster>& out) {
         const Vector3d axis = Eigen::SelfAdjointEigenSolver<Matrix3d>(matrix).eigenvectors().col(0);
         const Vector3d middle = (p + q) / 2;
 
-        group_.clear();
-        bool smaller_exists = false;
-        double worst = scene_.resolution;
-        const double reach = std::max(2 * level, 2 * scene_.resolution);
+        group_ = {usable_[k]};
+        explained[k] = 1;
         for (std::size_t r = 0; r < usable_.size(); ++r) {
-            const Match& match = *usable_[r];
-            const Vector3d r1 = at(match.pair.first), r2 = at(match.pair.second);
+            if (r == k) continue;
+            const Pair& other = usable_[r]->pair;
+            const Vector3d r1 = at(other.first), r2 = at(other.second);
             const Vector3d off = (r1 + r2) / 2 - middle;
             const double sideways = (off - axis * axis.dot(off)).norm();
-            if (r != k && 2 * std::max(sideways, std::abs(axis.dot(r2 - r1)) / 2) > reach) continue;
-            // Once a smaller pair is in the set, what else lies about this axis is that pair's to report.
-            const bool fits = smaller_exists || std::all_of(group_.begin(), group_.end(), [&](const Match* other) {
-                return exchange(other->pair, match.pair, level);
-            });
+            if (std::max(2 * sideways, std::abs(axis.dot(r2 - r1))) > level) continue;
+            const bool fits = std::all_of(group_.begin(), group_.end(),
+                                          [&](const Match* m) { return exchange(m->pair, other, level); });
             if (!fits) continue;
             explained[r] = 1;
-            if (smaller_exists) continue;
-            group_.push_back(&match);
-            const auto [low, high] = std::minmax(match.pair.first, match.pair.second);
-            smaller_exists = Pair{low, high} < pair_;
+            group_.push_back(usable_[r]);
         }
-        // The set is reported once, from its smallest pair.
-        explained[k] = 1;
-        if (smaller_exists) continue;
-        const int pairs = static_cast<int>(group_.size()) + 1;
-        if (pairs < 4 && 2 * pairs + 1 < scene_.size() &&
-            pairs + points_on_axis(middle, axis, reach) < 4)
-            continue;
-        PairCluster cluster{SymmetryType::half_turn, 0, {pair_}, true};
-        for (const Match* m : group_) {
-            worst = std::max(worst, m->tolerance);
-            cluster.pairs.push_back({std::min(m->pair.first, m->pair.second), std::max(m->pair.first, m->pair.second)});
-            for (const Match* other : group_) {
-                if (other == m) break;
-                const auto& d = scene_.distances;
-                worst = std::max({worst,
-                                  std::abs(d(m->pair.first, other->pair.first) - d(m->pair.second, other->pair.second)),
-                                  std::abs(d(m->pair.first, other->pair.second) - d(m->pair.second, other->pair.first))});
-            }
-        }
-        std::sort(cluster.pairs.begin(), cluster.pairs.end());
-        cluster.tolerance = worst;
-        out.push_back(std::move(cluster));
+        report_group(level, middle, axis);
     }
+}
+
+/// The pair at hand and group_ as one set, if it could be listed and no smaller pair reports it.
+void PairSearch::report_group(double level, const Vector3d& middle, const Vector3d& axis) {
+    const int pairs = static_cast<int>(group_.size()) + 1;
+    const bool may_cover = 2 * pairs + 1 >= scene_.size();
+    if (pairs < 4 && !may_cover && pairs + points_on_axis(middle, axis, level) < 4) return;
+    if (smaller_pair_turns(middle, axis, level, level)) return;
+    PairCluster cluster{SymmetryType::half_turn, scene_.resolution, {pair_}, true};
+    const auto& d = scene_.distances;
+    for (const Match* m : group_) {
+        const Pair& p = m->pair;
+        cluster.pairs.push_back({std::min(p.first, p.second), std::max(p.first, p.second)});
+        cluster.tolerance = std::max(cluster.tolerance, m->tolerance);
+        for (const Match* other : group_) {
+            if (other == m) break;
+            const Pair& q = other->pair;
+            cluster.tolerance = std::max({cluster.tolerance, std::abs(d(p.first, q.first) - d(p.second, q.second)),
+                                          std::abs(d(p.first, q.second) - d(p.second, q.first))});
+        }
+    }
+    std::sort(cluster.pairs.begin(), cluster.pairs.end());
+    out_.half_turns.push_back(std::move(cluster));
 }
 
 /// Disjoint, and the cross distances match within `level`.
@@ -267,59 +281,108 @@ bool PairSearch::exchange(const Pair& p, const Pair& q, double level) const {
            std::abs(d(p.first, q.second) - d(p.second, q.first)) <= level;
 }
 
-/// An upper bound of the fixed points of the half-turn; they are among those between the pair.
-int PairSearch::points_on_axis(const Vector3d& middle, const Vector3d& axis, double reach) const {
-    int count = 0;
-    for (const int q : middle_) {
-        const Vector3d off = at(q) - middle;
-        if (2 * (off - axis * axis.dot(off)).norm() <= reach) ++count;
+/// Is there a pair with a smaller first point about this axis? Then the axis is that pair's to report.
+bool PairSearch::smaller_pair_turns(const Vector3d& middle, const Vector3d& axis, double reach, double level) const {
+    for (int r = 0; r < pair_.first; ++r) {
+        const Vector3d off = at(r) - middle;
+        const Vector3d image = middle + 2 * axis * axis.dot(off) - off;
+        bool found = false;
+        grid_.visit_ball(to_point(image), reach, [&](int s, double) {
+            const Pair smaller{r, s};
+            found = s != r && scene_.label(s) == scene_.label(r) && exchange(smaller, pair_, level);
+            return !found;
+        });
+        if (found) return true;
     }
-    return count;
+    return false;
 }
 
-/// Clusters of one of the types whose single pair fixes the isometry.
-void cluster_edges(const Scene& scene, SymmetryType type, const std::vector<PairEdge>& edges,
-                   std::vector<PairCluster>& out) {
-    std::vector<Pair> pairs;
-    pairs.reserve(2 * edges.size());
-    for (const PairEdge& e : edges) {
-        pairs.push_back(e.first);
-        pairs.push_back(e.second);
+/// An upper bound of the fixed points of the half-turn; they are among those between the pair.
+int PairSearch::points_on_axis(const Vector3d& middle, const Vector3d& axis, double reach) {
+    if (!between_known_) {
+        between_.clear();
+        const double limit = scene_.max_tolerance;
+        for (std::size_t q = 0; q < a_.size(); ++q)
+            if (std::abs(a_[q] - b_[q]) <= 2 * limit) between_.push_back(static_cast<int>(q));
+        between_known_ = true;
     }
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    const auto id = [&](const Pair& p) {
-        return static_cast<int>(std::lower_bound(pairs.begin(), pairs.end(), p) - pairs.begin());
+    return static_cast<int>(std::count_if(between_.begin(), between_.end(), [&](int q) {
+        const Vector3d off = at(q) - middle;
+        return 2 * (off - axis * axis.dot(off)).norm() <= reach;
+    }));
+}
+
+/// Clusters of one of the types whose single pair fixes the isometry. `lone`: pairs that would do by
+/// themselves, listed if no edge of the lowest level takes them up.
+void cluster_edges(const Scene& scene, SymmetryType type, const std::vector<PairEdge>& edges,
+                   const std::vector<Pair>& lone, std::vector<PairCluster>& out) {
+    const auto key = [&](const Pair& p) {
+        return static_cast<std::size_t>(p.first) * static_cast<std::size_t>(scene.size()) + static_cast<std::size_t>(p.second);
     };
+    // Number the pairs that occur, in order.
+    std::vector<std::size_t> keys;
+    keys.reserve(2 * edges.size());
+    for (const PairEdge& e : edges) {
+        keys.push_back(key(e.first));
+        keys.push_back(key(e.second));
+    }
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    const auto number = [&](const Pair& p) { return std::lower_bound(keys.begin(), keys.end(), key(p)) - keys.begin(); };
+
     std::vector<Consistency> graph;
     graph.reserve(edges.size());
-    for (const PairEdge& e : edges) graph.push_back({e.tolerance, id(e.first), id(e.second), false});
-    const std::vector<double> no_limit(pairs.size(), std::numeric_limits<double>::infinity());
-    const Clustering clustering = complete_components(pairs.size(), std::move(graph), no_limit, scene.resolution);
+    std::vector<char> exact(keys.size(), 0);
+    for (const PairEdge& e : edges) {
+        const auto first = number(e.first), second = number(e.second);
+        graph.push_back({e.tolerance, static_cast<int>(first), static_cast<int>(second), false});
+        if (e.tolerance <= 2 * scene.resolution) exact[static_cast<std::size_t>(first)] = exact[static_cast<std::size_t>(second)] = 1;
+    }
+    const std::vector<double> no_limit(keys.size(), std::numeric_limits<double>::infinity());
+    const Clustering clustering = complete_components(keys.size(), std::move(graph), no_limit, scene.resolution);
     for (const Cluster& c : clustering.clusters) {
         PairCluster cluster{type, c.tolerance, {}, c.maximal};
-        for (const int m : c.members) cluster.pairs.push_back(pairs[static_cast<std::size_t>(m)]);
+        for (const int m : c.members) {
+            const auto n = static_cast<std::size_t>(scene.size());
+            const std::size_t k = keys[static_cast<std::size_t>(m)];
+            cluster.pairs.push_back({static_cast<int>(k / n), static_cast<int>(k % n)});
+        }
         out.push_back(std::move(cluster));
+    }
+    for (const Pair& p : lone) {
+        const auto at = static_cast<std::size_t>(number(p));
+        const bool known = at < keys.size() && keys[at] == key(p);
+        if (known && exact[at] != 0) continue;
+        out.push_back({type, scene.resolution, {p}, !known || clustering.clustered[at] == 0});
     }
 }
 
-/// Equal sets once, the lower tolerance; sets inside another one are not maximal.
-void tidy_half_turns(std::vector<PairCluster>& sets) {
+bool holds_all(const PairCluster& large, const PairCluster& small) {
+    return large.pairs.size() >= small.pairs.size() &&
+           std::includes(large.pairs.begin(), large.pairs.end(), small.pairs.begin(), small.pairs.end());
+}
+
+/// Of the sets that one pair reports, the largest: a set inside another counts only at a lower tolerance,
+/// and is then not maximal.
+void keep_largest(std::vector<PairCluster>& sets) {
     std::sort(sets.begin(), sets.end(), [](const PairCluster& a, const PairCluster& b) {
-        return std::tie(a.pairs, a.tolerance) < std::tie(b.pairs, b.tolerance);
+        if (a.pairs.front() != b.pairs.front()) return a.pairs.front() < b.pairs.front();
+        if (a.pairs.size() != b.pairs.size()) return a.pairs.size() > b.pairs.size();
+        return std::tie(a.tolerance, a.pairs) < std::tie(b.tolerance, b.pairs);
     });
-    sets.erase(std::unique(sets.begin(), sets.end(),
-                           [](const PairCluster& a, const PairCluster& b) { return a.pairs == b.pairs; }),
-               sets.end());
-    // A set is reported from its smallest pair, so sets that hold it mostly share that pair.
-    for (std::size_t i = 0; i < sets.size(); ++i)
-        for (std::size_t j = i; j-- > 0 && sets[j].pairs.front() == sets[i].pairs.front();) {
-            const auto& small = sets[i].pairs.size() < sets[j].pairs.size() ? i : j;
-            const auto& large = small == i ? j : i;
-            if (std::includes(sets[large].pairs.begin(), sets[large].pairs.end(), sets[small].pairs.begin(),
-                              sets[small].pairs.end()))
-                sets[small].maximal = false;
+    std::vector<PairCluster> kept;
+    std::size_t group = 0;  // where the sets of the pair at hand begin in kept
+    for (PairCluster& set : sets) {
+        if (group < kept.size() && kept[group].pairs.front() != set.pairs.front()) group = kept.size();
+        bool useful = true;
+        for (std::size_t k = group; k < kept.size() && useful; ++k) {
+            if (!holds_all(kept[k], set)) continue;
+            set.maximal = false;
+            useful = set.tolerance * kLadder <= kept[k].tolerance;
         }
+        if (useful) kept.push_back(std::move(set));
+    }
+    sets.swap(kept);
 }
 
 }  // namespace
@@ -332,30 +395,33 @@ std::vector<PairCluster> detect_pairs(const Scene& scene, TypeSet types, RunMoni
     if (!wanted) return clusters;
 
     const int n = scene.size();
+    const PointGrid grid(scene.points.positions);
     std::vector<Findings> findings(static_cast<std::size_t>(n));
     monitor.begin_stage("pairs", static_cast<std::size_t>(n));
     tbb::parallel_for(0, n, [&](int i) {
-        PairSearch search(scene, types);
+        PairSearch search(scene, grid, types, i, findings[static_cast<std::size_t>(i)]);
         for (int j = i + 1; j < n && !monitor.should_stop(); ++j)
-            if (scene.label(i) == scene.label(j)) search.search({i, j}, findings[static_cast<std::size_t>(i)]);
+            if (scene.label(i) == scene.label(j)) search.search(j);
         monitor.advance();
     });
     if (monitor.should_stop()) return clusters;
 
-    std::vector<PairEdge> mirror_edges, central_edges;
-    std::vector<PairCluster> half_turns;
+    Findings all;
+    const auto append = [](auto& to, auto& from) {
+        std::move(from.begin(), from.end(), std::back_inserter(to));
+    };
     for (Findings& f : findings) {
-        for (const PairEdge& e : f.mirror_edges)
-            if (e.first < e.second) mirror_edges.push_back(e);
-        central_edges.insert(central_edges.end(), f.central_edges.begin(), f.central_edges.end());
-        for (const Pair& p : f.lone_mirrors) clusters.push_back({SymmetryType::mirror, scene.resolution, {p}, true});
-        std::move(f.half_turns.begin(), f.half_turns.end(), std::back_inserter(half_turns));
+        append(all.mirror_edges, f.mirror_edges);
+        append(all.central_edges, f.central_edges);
+        append(all.lone_mirrors, f.lone_mirrors);
+        append(all.half_turns, f.half_turns);
         f = Findings{};
     }
-    if (types.contains(SymmetryType::mirror)) cluster_edges(scene, SymmetryType::mirror, mirror_edges, clusters);
-    if (types.contains(central)) cluster_edges(scene, central, central_edges, clusters);
-    tidy_half_turns(half_turns);
-    std::move(half_turns.begin(), half_turns.end(), std::back_inserter(clusters));
+    if (types.contains(SymmetryType::mirror))
+        cluster_edges(scene, SymmetryType::mirror, all.mirror_edges, all.lone_mirrors, clusters);
+    if (types.contains(central)) cluster_edges(scene, central, all.central_edges, {}, clusters);
+    keep_largest(all.half_turns);
+    append(clusters, all.half_turns);
     return clusters;
 }
 
