@@ -6,7 +6,6 @@
 #include <Message_ProgressRange.hxx>
 #include <STEPControl_Controller.hxx>
 #include <TopoDS_Shape.hxx>
-#include <UnitsMethods.hxx>
 #include <XSAlgo.hxx>
 
 namespace insym {
@@ -31,20 +30,15 @@ public:
 
 }  // namespace
 
-OcctSession::OcctSession()
-    : lock_(session_mutex()),
-      length_unit_mm_(UnitsMethods::GetCasCadeLengthUnit()),
-      printers_(Message::DefaultMessenger()->Printers()) {
+OcctSession::OcctSession() : lock_(session_mutex()), printers_(Message::DefaultMessenger()->Printers()) {
     STEPControl_Controller::Init();  // makes the settings, if nothing was read before
     algorithms_ = XSAlgo::AlgoContainer();
     XSAlgo::SetAlgoContainer(new UnhealedShapes);
-    UnitsMethods::SetCasCadeLengthUnit(1.0);
     Message::DefaultMessenger()->ChangePrinters().Clear();
 }
 
 OcctSession::~OcctSession() {
     Message::DefaultMessenger()->ChangePrinters() = printers_;
-    UnitsMethods::SetCasCadeLengthUnit(length_unit_mm_);
     XSAlgo::SetAlgoContainer(algorithms_);
 }
 

@@ -9,7 +9,7 @@
 
 namespace insym {
 
-/// While it lives, Open CASCADE prints nothing, works in millimetres and gives shapes as the file has them.
+/// While it lives, Open CASCADE prints nothing and gives shapes as the file has them.
 ///
 /// Sessions wait for one another. Shapes are not healed: healing splits edges and adds vertices where the
 /// seams of surfaces happen to lie, which no designer put there, and takes ten times as long as the rest.
@@ -22,7 +22,6 @@ public:
 
 private:
     std::lock_guard<std::mutex> lock_;
-    Standard_Real length_unit_mm_;
     Message_SequenceOfPrinters printers_;
     Handle(XSAlgo_AlgoContainer) algorithms_;
 };

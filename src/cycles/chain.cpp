@@ -86,51 +86,75 @@ bool ChainOracle::holds(std::span<const int> points, bool closed) {
 
 // --- candidates ----------------------------------------------------------------------------------
 
-double ChainOracle::extended_tolerance(const Chain& chain, End end, int point, double limit) {
-    const auto d = scene_.distances.row(point);
+/// Calls visit(q, E_min of the chain with q at `end`) for the points q that keep all orbits within `limit`, which
+/// visit may lower. `among`: as in best_candidate().
+template <class Visit>
+void ChainOracle::visit_extensions(const Chain& chain, End end, const std::vector<Candidate>* among, double& limit,
+                                   Visit visit) {
     const auto orbits = chain.orbits();
     const auto points = chain.points();
-    // From the end inwards; the farthest point starts an orbit of its own.
-    const int* next = end == End::right ? &points.back() : &points.front();
-    const std::ptrdiff_t stride = end == End::right ? -1 : 1;
-    spans_.resize(orbits.size() + 1);
-    for (std::size_t k = 0; k < orbits.size(); ++k, next += stride) {
-        Span span = orbits[k];
-        span.include(d[static_cast<std::size_t>(*next)]);
-        if (span.spread() > limit) return kInfinity;
-        spans_[k] = span;
+    const std::size_t c = points.size();
+    // Each orbit says how far q may be from one point of the chain, from the end inwards.
+    shells_.resize(c);
+    const double slack = 1e-12 * scene_.diameter;
+    for (std::size_t k = 0; k < c; ++k) {
+        shells_[k].distances = scene_.distances.row(points[end == End::right ? c - 1 - k : k]).data();
+        if (k + 1 == c) break;
+        shells_[k].low = orbits[k].high - limit - slack;
+        shells_[k].high = orbits[k].low + limit + slack;
     }
-    const double longest = d[static_cast<std::size_t>(*next)];
-    spans_.back() = {longest, longest};
-    return tolerance_interval(spans_, scene_.resolution, limit).min;
+    // Orbits in order of length, so that they are nearly so with q, too, and quickly sorted.
+    by_length_.resize(c - 1);
+    for (std::size_t k = 0; k + 1 < c; ++k) {
+        std::size_t at = k;
+        for (; at > 0 && orbits[k].low < orbits[by_length_[at - 1]].low; --at) by_length_[at] = by_length_[at - 1];
+        by_length_[at] = k;
+    }
+    spans_.resize(c);
+    const auto consider = [&](int q) {
+        for (std::size_t k = 0; k + 1 < c; ++k) {
+            const double d = shells_[k].distances[q];
+            if (d < shells_[k].low || d > shells_[k].high) return;
+        }
+        for (std::size_t k = 0; k + 1 < c; ++k) {
+            spans_[k] = orbits[by_length_[k]];
+            spans_[k].include(shells_[by_length_[k]].distances[q]);
+            if (spans_[k].spread() > limit) return;
+        }
+        // The farthest point starts an orbit of its own.
+        const double longest = shells_[c - 1].distances[q];
+        spans_[c - 1] = {longest, longest};
+        const double tolerance = tolerance_interval(spans_, scene_.resolution, limit).min;
+        if (tolerance <= limit && !chain.contains(q)) visit(q, tolerance);
+    };
+    if (among != nullptr) {
+        // A part of a chain is never worse than the whole: no later one of the list can be better.
+        for (const Candidate& candidate : *among) {
+            if (candidate.tolerance > limit) break;
+            consider(candidate.point);
+        }
+        return;
+    }
+    const int label = scene_.label(chain.from(end, 0));
+    scene_.distances.visit_shell(chain.from(end, 0), shells_[0].low, shells_[0].high, [&](int q, double) {
+        if (scene_.label(q) == label) consider(q);
+        return true;
+    });
 }
 
 void ChainOracle::candidates(const Chain& chain, End end, std::vector<Candidate>& out) {
     out.clear();
-    const double cap = scene_.max_tolerance;
-    const int tip = chain.from(end, 0);
-    const Span links = chain.orbits().front();
-    visit_shell(tip, links.high - cap, links.low + cap, [&](int q, double) {
-        if (scene_.label(q) != scene_.label(tip)) return true;
-        const double tolerance = extended_tolerance(chain, end, q, cap);
-        if (tolerance <= cap && !chain.contains(q)) out.push_back({tolerance, q});
-        return true;
-    });
+    double limit = scene_.max_tolerance;
+    visit_extensions(chain, end, nullptr, limit, [&](int q, double tolerance) { out.push_back({tolerance, q}); });
     std::sort(out.begin(), out.end());
 }
 
-Candidate ChainOracle::best_candidate(const Chain& chain, End end) {
+Candidate ChainOracle::best_candidate(const Chain& chain, End end, const std::vector<Candidate>* among) {
     Candidate best{kInfinity, -1};
     double limit = scene_.max_tolerance;
-    const int tip = chain.from(end, 0);
-    const Span links = chain.orbits().front();
-    visit_shell(tip, links.high - limit, links.low + limit, [&](int q, double) {
-        if (scene_.label(q) != scene_.label(tip)) return true;
-        const double tolerance = extended_tolerance(chain, end, q, limit);
-        if (tolerance > limit || chain.contains(q)) return true;
+    visit_extensions(chain, end, among, limit, [&](int q, double tolerance) {
         best = std::min(best, Candidate{tolerance, q});
         limit = best.tolerance;
-        return true;
     });
     return best;
 }
@@ -205,48 +229,72 @@ void ChainOracle::collect_distances(std::span<const int> points) {
     }
 }
 
-/// The spans of the orbits without the distances of the point `at`.
+/// The spans of the orbits without the distances of the point `at` (c or more: of no point).
 void ChainOracle::leave_out(std::span<const int> points, bool closed, std::size_t at) {
     const std::size_t c = points.size();
-    if (c <= kShortSequence) {
-        rest_.assign(closed ? c / 2 : c - 1, Span{});
-        for (std::size_t i = 0; i < c; ++i)
-            for (std::size_t j = i + 1; j < c && i != at; ++j)
-                if (j != at) {
-                    const std::size_t r = closed ? std::min(j - i, c - (j - i)) : j - i;
-                    rest_[r - 1].include(table_[i * c + j]);
-                }
+    rest_.resize(closed ? c / 2 : c - 1);
+    if (c > kShortSequence) {
+        for (std::size_t r = 1; r <= rest_.size(); ++r) {
+            const int before = static_cast<int>(at) - static_cast<int>(r);
+            rest_[r - 1] = extremes_[r - 1].without(static_cast<int>(at),
+                                                    closed && before < 0 ? before + static_cast<int>(c) : before);
+        }
         return;
     }
-    rest_.clear();
-    for (std::size_t r = 1; r <= extremes_.size(); ++r) {
-        const int before = static_cast<int>(at) - static_cast<int>(r);
-        rest_.push_back(extremes_[r - 1].without(static_cast<int>(at),
-                                                 closed && before < 0 ? before + static_cast<int>(c) : before));
+    for (std::size_t r = 1; r <= rest_.size(); ++r) {
+        Span span;
+        for (std::size_t i = 0; i < (closed ? c : c - r); ++i) {
+            const std::size_t j = i + r < c ? i + r : i + r - c;
+            if (i != at && j != at) span.include(table_[i * c + j]);
+        }
+        rest_[r - 1] = span;
     }
 }
 
 bool ChainOracle::unambiguous(std::span<const int> points, bool closed) {
-    const double eps = interval(points, closed).min;
-    if (points.size() <= kShortSequence)
+    if (points.size() <= kShortSequence) {
         collect_distances(points);
-    else
+        leave_out(points, closed, points.size());
+        spans_ = rest_;
+    } else {
         collect_extremes(points, closed);
+        spans_.clear();
+        for (const Extremes& e : extremes_) spans_.push_back(e.all());
+    }
+    const double eps = tolerance_interval(spans_, scene_.resolution).min;
     // What could replace a point the last time often can again: most chains end here.
+    const auto again = std::find(points.begin(), points.end(), replaced_);
+    if (again != points.end() &&
+        replaceable_by_twin(points, closed, static_cast<std::size_t>(again - points.begin()), eps))
+        return false;
     for (std::size_t at = 0; at < points.size(); ++at)
-        if (replaceable_by(points, closed, at, twin_[static_cast<std::size_t>(points[at])], eps)) return false;
+        if (points[at] != replaced_ && replaceable_by_twin(points, closed, at, eps)) return false;
     for (std::size_t at = 0; at < points.size(); ++at)
         if (replaceable(points, closed, at, eps)) return false;
     return true;
 }
 
-bool ChainOracle::replaceable_by(std::span<const int> points, bool closed, std::size_t at, int twin, double eps) {
-    if (twin < 0 || scene_.label(twin) != scene_.label(points[at])) return false;
+bool ChainOracle::replaceable_by_twin(std::span<const int> points, bool closed, std::size_t at, double eps) {
+    const int twin = twin_[static_cast<std::size_t>(points[at])];
+    if (twin < 0) return false;
+    const std::size_t c = points.size();
+    const auto d = scene_.distances.row(twin);
+    const auto to = [&](std::size_t k) { return d[static_cast<std::size_t>(points[k])]; };
+    const std::size_t neighbour = at + 1 < c ? at + 1 : at - 1;
+    if (std::abs(to(neighbour) - scene_.distances(points[at], points[neighbour])) > 2 * eps) return false;
+    // Its own two distances of a step must agree; this settles most before the other orbits are looked at.
+    for (std::size_t r = 1; r < c; ++r) {
+        Span span;
+        if (at + r < c) span.include(to(at + r));
+        if (at >= r) span.include(to(at - r));
+        if (span.empty()) break;
+        if (span.spread() > eps) return false;
+    }
     if (std::find(points.begin(), points.end(), twin) != points.end()) return false;
-    const int neighbour = at + 1 < points.size() ? points[at + 1] : points[at - 1];
-    if (std::abs(scene_.distances(twin, neighbour) - scene_.distances(points[at], neighbour)) > 2 * eps) return false;
     leave_out(points, closed, at);
-    return fits_in_place(points, closed, at, twin, eps);
+    if (!fits_in_place(points, closed, at, twin, eps)) return false;
+    replaced_ = points[at];
+    return true;
 }
 
 bool ChainOracle::replaceable(std::span<const int> points, bool closed, std::size_t at, double eps) {
@@ -264,7 +312,10 @@ bool ChainOracle::replaceable(std::span<const int> points, bool closed, std::siz
         found = scene_.label(q) == scene_.label(points[at]) && std::abs(d - usual) <= 2 * eps &&
                 fits_in_place(points, closed, at, q, eps) &&
                 std::find(points.begin(), points.end(), q) == points.end();
-        if (found) twin_[static_cast<std::size_t>(points[at])] = q;
+        if (found) {
+            replaced_ = points[at];
+            twin_[static_cast<std::size_t>(replaced_)] = q;
+        }
         return !found;
     });
     return found;

@@ -65,8 +65,9 @@ public:
 
     /// Every point that extends `end` with C1 true, least E_min first, ties by index.
     void candidates(const Chain& chain, End end, std::vector<Candidate>& out);
-    /// The first of them, or tolerance = infinity and point = -1.
-    Candidate best_candidate(const Chain& chain, End end);
+    /// The first of them, or tolerance = infinity and point = -1. `among`: a list known to hold all of them, such
+    /// as the candidates of a part of the chain at the same end.
+    Candidate best_candidate(const Chain& chain, End end, const std::vector<Candidate>* among = nullptr);
 
 private:
     struct Extremes;
@@ -78,19 +79,30 @@ private:
         const double slack = 1e-12 * scene_.diameter;
         scene_.distances.visit_shell(point, low - slack, high + slack, visit);
     }
-    double extended_tolerance(const Chain& chain, End end, int point, double limit);
+    template <class Visit>
+    void visit_extensions(const Chain& chain, End end, const std::vector<Candidate>* among, double& limit, Visit visit);
     void collect_extremes(std::span<const int> points, bool closed);
     void collect_distances(std::span<const int> points);
     void leave_out(std::span<const int> points, bool closed, std::size_t at);
     bool replaceable(std::span<const int> points, bool closed, std::size_t at, double eps);
-    bool replaceable_by(std::span<const int> points, bool closed, std::size_t at, int twin, double eps);
+    bool replaceable_by_twin(std::span<const int> points, bool closed, std::size_t at, double eps);
     bool fits_in_place(std::span<const int> points, bool closed, std::size_t at, int point, double eps);
 
+    /// How far a new point may be from one of the chain.
+    struct Shell {
+        const double* distances = nullptr;  // of that point
+        double low = 0;
+        double high = 0;
+    };
+
     const Scene& scene_;
+    std::vector<Shell> shells_;
+    std::vector<std::size_t> by_length_;
     std::vector<Span> spans_;
     std::vector<Span> rest_;  // the orbits without the distances of one point
     std::vector<Extremes> extremes_;
     std::vector<int> twin_;  // for each point: what could replace it the last time, or -1
+    int replaced_ = -1;      // the point that could be replaced the last time
     std::vector<double> table_;  // the distances within a short sequence, row by row
 };
 

@@ -44,9 +44,18 @@ public:
 
 private:
     void expand_seed(std::span<const int> seed);
+    /// For each end: a list that holds all candidates of a chain there, or none where it is not known.
+    struct Ends {
+        const std::vector<Candidate>* left = nullptr;
+        const std::vector<Candidate>* right = nullptr;
+    };
+    static constexpr int kLeft = 0;
+    static constexpr int kRight = 1;
+
     bool expand_chain(std::span<const int> four);
-    bool follow(std::span<const int> start);
-    bool follow_path();
+    bool expand_side(std::span<const int> four, const std::vector<Candidate>& fifths, const std::vector<Candidate>& far);
+    bool follow(std::span<const int> start, Ends ends);
+    bool follow_path(Ends ends);
     void add_branch(int left);
     bool resolve_open(std::span<const int> chain);
     bool resolve_closed(std::span<const int> ring);
@@ -70,12 +79,12 @@ private:
     ChainOracle oracle_;
     TypeOracle type_oracle_;
     ChainMemo memo_;
+    ChainMemo rings_;
     Chain chain_;
     std::vector<End> path_;  // at which end of chain_ each point after the start was added
     std::vector<Branch> branches_;
-    std::vector<Candidate> after_;
-    std::vector<Candidate> before_;
-    std::vector<Candidate> fifths_;
+    std::vector<Candidate> fourths_[2];  // at the left and the right end of the seed
+    std::vector<Candidate> fifths_[2];
     Chain extended_;
     std::vector<Candidate> extensions_;
     std::size_t seeds_ = 0;
@@ -109,34 +118,53 @@ void Expansion::expand_apex(int apex) {
 /// falls back to the chain of four and then to the seed.
 void Expansion::expand_seed(std::span<const int> seed) {
     chain_.assign(seed);
-    oracle_.candidates(chain_, End::right, after_);
-    oracle_.candidates(chain_, End::left, before_);
-    bool found = !after_.empty() && !before_.empty();
-    for (const Candidate& fourth : after_) {
+    oracle_.candidates(chain_, End::right, fourths_[kRight]);
+    oracle_.candidates(chain_, End::left, fourths_[kLeft]);
+    bool found = !fourths_[kRight].empty() && !fourths_[kLeft].empty();
+    for (const Candidate& fourth : fourths_[kRight]) {
         const int four[] = {seed[0], seed[1], seed[2], fourth.point};
         found = expand_chain(four) && found;
     }
-    for (const Candidate& fourth : before_) {
-        const int four[] = {seed[2], seed[1], seed[0], fourth.point};
+    for (const Candidate& fourth : fourths_[kLeft]) {
+        const int four[] = {fourth.point, seed[0], seed[1], seed[2]};
         found = expand_chain(four) && found;
     }
     if (!found) resolve_open(seed);
 }
 
-/// In 3D also branches over the best fifth point on each side of the plane of points 2 to 4. True if every
-/// branch found a cycle, be it the chain of four itself.
+/// In 3D also branches over the best fifth point at either end on each side of the plane of the three
+/// points there. True if every branch found a cycle, be it the chain of four itself.
 bool Expansion::expand_chain(std::span<const int> four) {
-    bool found = follow(four);
-    if (scene_.dimension() == 2) return found;
-    chain_.assign(four);
-    oracle_.candidates(chain_, End::right, fifths_);
+    const ChainMemo::Id id = memo_.id(four);
+    if (const auto known = memo_[id].all; known != Answer::unknown) return known == Answer::yes;
+    Ends ends;
+    if (scene_.dimension() == 3) {
+        chain_.assign(four);
+        oracle_.candidates(chain_, End::right, fifths_[kRight]);
+        oracle_.candidates(chain_, End::left, fifths_[kLeft]);
+        ends = {&fifths_[kLeft], &fifths_[kRight]};
+    }
+    bool found = follow(four, ends);
+    if (scene_.dimension() == 3) {
+        const int reversed[] = {four[3], four[2], four[1], four[0]};
+        // What can come at the far end is known from the chain of four; at the near end it is not.
+        found = expand_side(four, fifths_[kRight], fifths_[kLeft]) && found;
+        found = expand_side(reversed, fifths_[kLeft], fifths_[kRight]) && found;
+    }
+    memo_[id].all = answer(found);
+    return found;
+}
+
+bool Expansion::expand_side(std::span<const int> four, const std::vector<Candidate>& fifths,
+                            const std::vector<Candidate>& far) {
+    bool found = true;
     bool taken[3] = {false, false, false};
-    for (const Candidate& fifth : fifths_) {
+    for (const Candidate& fifth : fifths) {
         bool& done = taken[side(four, fifth.point) + 1];
         if (done) continue;
         done = true;
         const int five[] = {four[0], four[1], four[2], four[3], fifth.point};
-        if (!follow(five) && !resolve_open(four)) found = false;
+        if (!follow(five, {&far, nullptr}) && !resolve_open(four)) found = false;
     }
     return found;
 }
@@ -157,46 +185,49 @@ int Expansion::side(std::span<const int> chain, int point) const {
 /// nothing fits; keeps the longest chain met that is unambiguous and has a type. True if there is
 /// one on every branch: where both ends are equally good, a chain and its reverse part ways, and both
 /// are followed.
-bool Expansion::follow(std::span<const int> start) {
+bool Expansion::follow(std::span<const int> start, Ends ends) {
     chain_.assign(start);
     path_.clear();
     branches_.clear();
-    bool found = follow_path();
+    bool found = follow_path(ends);
     while (!branches_.empty()) {
         const Branch branch = std::move(branches_.back());
         branches_.pop_back();
         chain_.assign(branch.points);
         path_ = branch.path;
-        found = follow_path() && found;
+        found = follow_path({}) && found;
     }
     return found;
 }
 
 /// One branch, from chain_ on; path_ says how chain_ came from the start. What follows depends on the
 /// chain alone, so chains met before end it.
-bool Expansion::follow_path() {
+bool Expansion::follow_path(Ends ends) {
     bool found = false;
     const int known_size = chain_.size();
     while (true) {
-        if (const auto known = memo_[chain_.points()].path; known != Answer::unknown) {
+        const ChainMemo::Id id = memo_.id(chain_.points());
+        if (const auto known = memo_[id].path; known != Answer::unknown) {
             found = known == Answer::yes;
             break;
         }
         if (monitor_.should_stop()) return true;
         const double closed = oracle_.closed_tolerance(chain_);
-        const Candidate right = oracle_.best_candidate(chain_, End::right);
-        const Candidate left = oracle_.best_candidate(chain_, End::left);
+        const Candidate right = oracle_.best_candidate(chain_, End::right, ends.right);
+        const Candidate left = oracle_.best_candidate(chain_, End::left, ends.left);
         const double best = std::min(right.tolerance, left.tolerance);
         const bool closes = closed <= std::min(best, scene_.max_tolerance);
         if (closes || best > scene_.max_tolerance) {
             found = (closes && resolve_closed(chain_.points())) || resolve_open(chain_.points());
-            memo_[chain_.points()].path = answer(found);
+            memo_[id].path = answer(found);
             break;
         }
         if (right.tolerance == left.tolerance && chain_.size() <= kLongestBranching) add_branch(left.point);
         const bool to_right = right.tolerance == best;
         chain_.add(to_right ? right.point : left.point, to_right ? End::right : End::left);
         path_.push_back(to_right ? End::right : End::left);
+        // The end that moved on has new neighbours.
+        (to_right ? ends.right : ends.left) = nullptr;
     }
     // Back along the path, each chain a window of the last.
     std::span<const int> window = chain_.points();
@@ -204,7 +235,7 @@ bool Expansion::follow_path() {
         window = path_.back() == End::right ? window.first(window.size() - 1) : window.subspan(1);
         if (found && static_cast<int>(window.size()) < known_size) break;
         found = found || resolve_open(window);
-        if (auto& known = memo_[window].path; known == Answer::unknown) known = answer(found);
+        if (auto& known = memo_[memo_.id(window)].path; known == Answer::unknown) known = answer(found);
     }
     return found;
 }
@@ -222,31 +253,41 @@ void Expansion::add_branch(int left) {
 /// C2, then C3 by extension, then the types. True if a cycle came out. Each longer chain met on the way
 /// would come to the same end, so one answer serves them all.
 bool Expansion::resolve_open(std::span<const int> chain) {
-    if (const auto known = memo_[chain].alone; known != Answer::unknown) return known == Answer::yes;
+    const ChainMemo::Id id = memo_.id(chain);
+    if (const auto known = memo_[id].alone; known != Answer::unknown) return known == Answer::yes;
+    if (!oracle_.unambiguous(chain, false)) {
+        memo_[id].alone = Answer::no;
+        return false;
+    }
     std::vector<int> s(chain.begin(), chain.end());
     if (s.front() > s.back()) std::reverse(s.begin(), s.end());
-    std::vector<std::vector<int>> passed;
+    std::vector<ChainMemo::Id> passed = {id};
     bool found = false;
-    for (bool open = oracle_.unambiguous(s, false); open;) {
-        passed.push_back(s);
+    for (bool open = true; open;) {
         if (!extend(s)) {
             found = keep(s, false);
             open = false;
         } else if (oracle_.holds(s, true) && oracle_.unambiguous(s, true)) {
             found = keep(s, true);
             open = false;
-        } else if (const auto known = memo_[s].alone; known != Answer::unknown) {
+        } else {
+            passed.push_back(memo_.id(s));
+            const auto known = memo_[passed.back()].alone;
             found = known == Answer::yes;
-            open = false;
+            open = known == Answer::unknown;
         }
     }
-    memo_[chain].alone = answer(found);
-    for (const std::vector<int>& p : passed) memo_[p].alone = answer(found);
+    for (const ChainMemo::Id p : passed) memo_[p].alone = answer(found);
     return found;
 }
 
+/// A ring is met from each of its points and in both directions; asked once.
 bool Expansion::resolve_closed(std::span<const int> ring) {
-    return oracle_.unambiguous(ring, true) && keep(ring, true);
+    const CanonicalCycle cycle = canonical(ring, true);
+    const ChainMemo::Id id = rings_.id(cycle.points);
+    if (rings_[id].alone == Answer::unknown)
+        rings_[id].alone = answer(oracle_.unambiguous(cycle.points, true) && keep(cycle.points, true));
+    return rings_[id].alone == Answer::yes;
 }
 
 /// Adds the cycle if it has a type.

@@ -38,18 +38,30 @@ std::size_t join_classes(std::span<Span> classes, double gap) {
 
 ToleranceInterval tolerance_interval(std::span<Span> spans, double floor, double limit) {
     sort_by_low(spans);
-    // Orbits that overlap are one class at any tolerance.
-    std::size_t count = join_classes(spans, 0);
+    // Orbits that overlap are one class at any tolerance; mostly the classes then stay apart.
     double eps = floor;
-    while (true) {
-        double least_gap = kInfinity;
+    double least_gap = kInfinity;
+    std::size_t last = 0;
+    for (std::size_t i = 1; i < spans.size(); ++i) {
+        const double gap = spans[i].low - spans[last].high;
+        if (gap <= 0) {
+            spans[last].high = std::max(spans[last].high, spans[i].high);
+        } else {
+            eps = std::max(eps, spans[last].spread());
+            least_gap = std::min(least_gap, gap);
+            spans[++last] = spans[i];
+        }
+    }
+    eps = std::max(eps, spans[last].spread());
+    for (std::size_t count = last + 1;;) {
+        if (eps > limit) return {kInfinity, kInfinity};
+        if (eps < least_gap) return {eps, least_gap};
+        count = join_classes(spans.first(count), eps);
+        least_gap = kInfinity;
         for (std::size_t i = 0; i < count; ++i) {
             eps = std::max(eps, spans[i].spread());
             if (i > 0) least_gap = std::min(least_gap, spans[i].low - spans[i - 1].high);
         }
-        if (eps > limit) return {kInfinity, kInfinity};
-        if (eps < least_gap) return {eps, least_gap};
-        count = join_classes(spans.first(count), eps);
     }
 }
 

@@ -102,8 +102,7 @@ public:
     /// Where it is: axis, plane, centre or direction, whichever its type is known by.
     std::string place() const {
         const Isometry& f = symmetry_.isometry;
-        const std::string axis =
-            f.axis ? "axis " + direction(f.axis->direction) + " through " + position(f.axis->point) : "";
+        const std::string axis = f.axis ? axis_text(*f.axis) : "";
         std::string center = f.center ? "centre " + position(*f.center) : "";
         std::string mirror = f.plane ? plane(*f.plane) : "";
         switch (symmetry_.type) {
@@ -151,13 +150,27 @@ private:
         return text += "xyz"[axis];
     }
 
+    /// "axis z at x = 90, y = 75" where it is that simple.
+    std::string axis_text(const Axis& axis) const {
+        const std::string text = "axis " + direction(axis.direction);
+        const int along = coordinate_axis(normalized(axis.direction));
+        if (along < 0) return text + " through " + position(axis.point);
+        std::string place;
+        for (int i = 0; i < static_cast<int>(dimension_); ++i)
+            if (i != along) place += (place.empty() ? " at " : ", ") + coordinate(axis.point, i);
+        return text + place;
+    }
+
+    /// "x = 2.5".
+    std::string coordinate(const Point& point, int i) const {
+        return std::string(1, "xyz"[i]) + " = " + fixed_text(point[static_cast<std::size_t>(i)], decimals_);
+    }
+
     /// "plane x = 2.5" where it is that simple; in 2D the mirror is a line.
     std::string plane(const Plane& plane) const {
         const std::string noun = dimension_ == 2 ? "line " : "plane ";
         const int axis = coordinate_axis(normalized(plane.normal));
-        if (axis >= 0)
-            return noun + "xyz"[axis] + " = " +
-                   fixed_text(plane.point[static_cast<std::size_t>(axis)], decimals_);
+        if (axis >= 0) return noun + coordinate(plane.point, axis);
         return noun + "normal to " + direction(plane.normal) + " through " + position(plane.point);
     }
 
