@@ -108,7 +108,7 @@ std::string in_one_line(const char* message) {
 std::optional<std::string> find_fault(const StepData_StepModel& model, Standard_Integer number) {
     const Handle(Standard_Transient)& item = model.Value(number);
     if (!item->IsKind(STANDARD_TYPE(StepRepr_RepresentationItem))) return std::nullopt;
-    const Handle(Interface_Check) check = model.Check(number, Standard_True);
+    const Handle(Interface_Check)& check = model.Check(number, Standard_True);
     if (check->HasFailed()) return in_one_line(check->CFail(1));
     if (const auto point = Handle(StepGeom_CartesianPoint)::DownCast(item)) {
         for (Standard_Integer i = 1; i <= point->NbCoordinates(); ++i)

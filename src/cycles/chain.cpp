@@ -149,9 +149,8 @@ void ChainOracle::candidates(const Chain& chain, End end, std::vector<Candidate>
     std::sort(out.begin(), out.end());
 }
 
-Candidate ChainOracle::best_candidate(const Chain& chain, End end, const std::vector<Candidate>* among) {
+Candidate ChainOracle::best_candidate(const Chain& chain, End end, double limit, const std::vector<Candidate>* among) {
     Candidate best{kInfinity, -1};
-    double limit = scene_.max_tolerance;
     visit_extensions(chain, end, among, limit, [&](int q, double tolerance) {
         best = std::min(best, Candidate{tolerance, q});
         limit = best.tolerance;

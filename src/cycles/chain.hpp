@@ -65,9 +65,9 @@ public:
 
     /// Every point that extends `end` with C1 true, least E_min first, ties by index.
     void candidates(const Chain& chain, End end, std::vector<Candidate>& out);
-    /// The first of them, or tolerance = infinity and point = -1. `among`: a list known to hold all of them, such
-    /// as the candidates of a part of the chain at the same end.
-    Candidate best_candidate(const Chain& chain, End end, const std::vector<Candidate>* among = nullptr);
+    /// The first of them, or tolerance = infinity and point = -1 if none is within `limit`. `among`: a list known
+    /// to hold all of them, such as the candidates of a part of the chain at the same end.
+    Candidate best_candidate(const Chain& chain, End end, double limit, const std::vector<Candidate>* among = nullptr);
 
 private:
     struct Extremes;

@@ -56,6 +56,7 @@ private:
     bool expand_side(std::span<const int> four, const std::vector<Candidate>& fifths, const std::vector<Candidate>& far);
     bool follow(std::span<const int> start, Ends ends);
     bool follow_path(Ends ends);
+    std::pair<Candidate, Candidate> best_ends(double limit, Ends ends);
     void add_branch(int left);
     bool resolve_open(std::span<const int> chain);
     bool resolve_closed(std::span<const int> ring);
@@ -213,8 +214,7 @@ bool Expansion::follow_path(Ends ends) {
         }
         if (monitor_.should_stop()) return true;
         const double closed = oracle_.closed_tolerance(chain_);
-        const Candidate right = oracle_.best_candidate(chain_, End::right, ends.right);
-        const Candidate left = oracle_.best_candidate(chain_, End::left, ends.left);
+        const auto [right, left] = best_ends(std::min(closed, scene_.max_tolerance), ends);
         const double best = std::min(right.tolerance, left.tolerance);
         const bool closes = closed <= std::min(best, scene_.max_tolerance);
         if (closes || best > scene_.max_tolerance) {
@@ -238,6 +238,17 @@ bool Expansion::follow_path(Ends ends) {
         if (auto& known = memo_[memo_.id(window)].path; known == Answer::unknown) known = answer(found);
     }
     return found;
+}
+
+/// The best candidates at the right and at the left end within `limit`. The end that is quickly asked goes first: what
+/// it offers limits the other.
+std::pair<Candidate, Candidate> Expansion::best_ends(double limit, Ends ends) {
+    const bool left_first = ends.left != nullptr;
+    const End first = left_first ? End::left : End::right;
+    const Candidate one = oracle_.best_candidate(chain_, first, limit, left_first ? ends.left : ends.right);
+    const Candidate other = oracle_.best_candidate(chain_, left_first ? End::right : End::left,
+                                                   std::min(limit, one.tolerance), left_first ? ends.right : ends.left);
+    return left_first ? std::pair(other, one) : std::pair(one, other);
 }
 
 void Expansion::add_branch(int left) {

@@ -27,7 +27,9 @@ constexpr double kLadder = 10;
 struct Match {
     Pair pair;             // in the order of the pair at hand: its first point's counterpart first
     double tolerance = 0;  // E_min of the union
-    double reach = 0;      // distance of the middles: how well the two fix an axis
+    Vector3d off;          // from the middle of the pair at hand to the middle of this one
+    Vector3d half;         // from the middle to the second point
+    double reach = 0;      // |off|: how well the two fix an axis
 };
 
 /// How far the least-squares M, I and half-turn of two pairs leave their points (all four links).
@@ -189,7 +191,7 @@ void PairSearch::examine(int q, int image, double tolerance) {
         out_.mirror_edges.push_back({tolerance, pair_, other});
     const SymmetryType central = scene_.dimension() == 3 ? SymmetryType::inversion : SymmetryType::half_turn;
     if (types_.contains(central) && fit.inversion <= limit) out_.central_edges.push_back({tolerance, pair_, other});
-    if (fit.half_turn <= limit && scene_.dimension() == 3) matches_.push_back({{q, image}, tolerance, w.norm()});
+    if (fit.half_turn <= limit && scene_.dimension() == 3) matches_.push_back({{q, image}, tolerance, w, v, w.norm()});
 }
 
 /// The mirror of the pair alone moves q by |a^2 - b^2| / |P1 P2|.
@@ -225,28 +227,28 @@ void PairSearch::group_at(double level) {
     std::vector<char> explained(usable_.size(), 0);
     for (std::size_t k = 0; k < usable_.size(); ++k) {
         if (explained[k] != 0) continue;
-        const Vector3d q1 = at(usable_[k]->pair.first), q2 = at(usable_[k]->pair.second);
-        const Vector3d q = (q1 + q2) / 2, v = (q2 - q1) / 2, w = q - p;
-        const Matrix3d matrix = u * u.transpose() + v * v.transpose() - w * w.transpose() / 2;
-        const Vector3d axis = Eigen::SelfAdjointEigenSolver<Matrix3d>(matrix).eigenvectors().col(0);
-        const Vector3d middle = (p + q) / 2;
+        const Vector3d &v = usable_[k]->half, &w = usable_[k]->off;
+        Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
+        solver.computeDirect(u * u.transpose() + v * v.transpose() - w * w.transpose() / 2);
+        const Vector3d axis = solver.eigenvectors().col(0);
 
         group_ = {usable_[k]};
         explained[k] = 1;
         for (std::size_t r = 0; r < usable_.size(); ++r) {
-            if (r == k) continue;
-            const Pair& other = usable_[r]->pair;
-            const Vector3d r1 = at(other.first), r2 = at(other.second);
-            const Vector3d off = (r1 + r2) / 2 - middle;
-            const double sideways = (off - axis * axis.dot(off)).norm();
-            if (std::max(2 * sideways, std::abs(axis.dot(r2 - r1))) > level) continue;
+            const Match& match = *usable_[r];
+            // The half-turn moves the points of a pair off by twice its middle's way off the axis, and by twice the
+            // chord's share along it.
+            if (2 * std::abs(axis.dot(match.half)) > level) continue;
+            const Vector3d off = match.off - w / 2;
+            const double along = axis.dot(off);
+            if (4 * (off.squaredNorm() - along * along) > level * level || r == k) continue;
             const bool fits = std::all_of(group_.begin(), group_.end(),
-                                          [&](const Match* m) { return exchange(m->pair, other, level); });
+                                          [&](const Match* m) { return exchange(m->pair, match.pair, level); });
             if (!fits) continue;
             explained[r] = 1;
             group_.push_back(usable_[r]);
         }
-        report_group(level, middle, axis);
+        report_group(level, p + w / 2, axis);
     }
 }
 
