@@ -1,0 +1,68 @@
+# What people and CI run. Each target installs the Debian packages it needs, if any is missing.
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+JOBS ?= $(shell nproc)
+CMAKE_ARGS ?=  # more arguments for CMake, such as -DINSYM_WARNINGS_AS_ERRORS=OFF
+
+.PHONY: help
+help: ## List the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+.PHONY: packages-build packages-test packages-lint
+packages-build:
+	@scripts/install_packages.sh build
+packages-test:
+	@scripts/install_packages.sh build test
+packages-lint:
+	@scripts/install_packages.sh build lint
+
+# $(call build,PRESET,TARGET)
+build = cmake --preset $(1) $(CMAKE_ARGS) >/dev/null && cmake --build --preset $(1) --parallel $(JOBS) --target $(2)
+
+.PHONY: build
+build: packages-build ## Build the program build/insym
+	@$(call build,release,insym_app)
+
+.PHONY: demo
+demo: build ## Find the symmetries of examples/flange.step
+	@mkdir -p build/demo
+	build/insym detect examples/flange.step --json build/demo/flange.json | tee build/demo/flange.txt
+	@echo; echo "Files written:"; ls build/demo/* | sed 's/^/  /'
+
+.PHONY: test
+test: packages-test ## Build and run all tests
+	@$(call build,release,all)
+	@ctest --preset release --parallel $(JOBS)
+
+.PHONY: package-test
+package-test: packages-test ## Install into a scratch folder and build programs that use the package
+	@$(call build,release,all)
+	@ctest --preset release --parallel $(JOBS) --label-regex '^package$$'
+
+.PHONY: sanitize
+sanitize: sanitize-asan sanitize-tsan ## Run all tests with the address, undefined-behaviour and thread sanitizers
+
+.PHONY: sanitize-asan sanitize-tsan
+sanitize-asan sanitize-tsan: sanitize-%: packages-test
+	@$(call build,$*,all)
+	@ctest --preset $* --parallel $(JOBS)
+
+.PHONY: bench
+bench: packages-test ## Time the stages, and the program against its targets
+	@$(call build,release,insym_app insym_bench)
+	build/bench/insym_bench
+	/usr/bin/python3 bench/run_bench.py
+
+.PHONY: format
+format: packages-lint ## Format the C++ sources
+	@scripts/lint.sh --fix
+
+.PHONY: lint
+lint: packages-lint ## Check format, clang-tidy, compiler warnings and shell scripts
+	@$(call build,release,all)
+	@scripts/lint.sh
+
+.PHONY: clean
+clean: ## Remove everything that was built
+	rm -rf build build-debug build-asan build-tsan

@@ -1,0 +1,274 @@
+#include "options.hpp"
+
+#include "insym/error.hpp"
+#include "insym/version.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "suggest.hpp"
+
+namespace insym::app {
+namespace {
+
+constexpr const char* kHelpHint = "; see 'insym detect --help'";
+
+constexpr const char* kMainFooter = R"(Examples:
+  insym detect part.step                      the symmetries of a model, as a table
+  insym detect points.xyz --json report.json  the table, and a full report in a file
+
+Exit status: 0 done, also when nothing is found; 1 a defect of the program; 2 wrong usage, or an
+output that cannot be written; 3 the input cannot be read; 4 the input is read but invalid; 5 stopped
+early by a time limit or an interrupt, with a valid report of what was found. See insym detect --help.)";
+
+constexpr const char* kDetectFooter =
+    R"(Input: STEP models (.step, .stp; their vertices), or points as text (.xyz, .csv, .txt, others): 2 columns
+are x y, 3 are x y z, 4 are x y z label (a whole number; only points of one label are matched).
+The chemists' .xyz is read too: elements become labels. Lines that begin with # are comments.
+
+Output: without --json -, a ranked table on standard output; progress and notes on standard error.
+A file appears under its name only when it is whole. A reader of standard output that closes it
+early (insym ... | head -1) is no error. The first Ctrl-C stops the search and writes what was found
+(status 5), the second ends the program at once.
+
+Examples:
+  insym detect part.step
+  insym detect points.xyz --max-tolerance 0.001 --types C,M
+  insym detect scan.csv --columns x,y,label --json report.json --quiet
+  generate | insym detect - --json - | jq .symmetries[0]
+
+Exit status: 0 done, also when nothing is found; 1 a defect of the program; 2 wrong usage; 3 the input
+cannot be read; 4 the input is invalid; 5 stopped early, the report is valid and says so.)";
+
+/// The options as they were typed; empty: not given.
+struct Typed {
+    std::string input, json, html, columns, time_limit;
+    std::string method = "paper", points = "vertices", types = "M,I,C2,C,T,Z,S,W";
+    std::string max_tolerance = "auto", resolution = "1e-6", limit = "20", threads = "0";
+    bool quiet = false;
+};
+
+[[noreturn]] void fail(const std::string& sentence) {
+    throw Error(ErrorCode::invalid_option, sentence);
+}
+
+[[noreturn]] void fail_value(const std::string& option, const std::string& value, const std::string& wanted) {
+    fail(option + " " + value + ": " + wanted);
+}
+
+/// The nearest of the names, or where all of them are explained.
+std::string hint_for(std::string_view word, const std::vector<std::string>& names) {
+    const std::string hint = did_you_mean(word, names);
+    return hint.empty() ? kHelpHint : hint;
+}
+
+// The values ----------------------------------------------------------------------------------
+
+template <class Number>
+std::optional<Number> to_number(const std::string& text) {
+    Number value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+int parse_count(const std::string& option, const std::string& text, int most) {
+    const auto value = to_number<int>(text);
+    if (!value || *value < 0 || *value > most)
+        fail_value(option, text, "a whole number from 0 to " + std::to_string(most) + " is needed");
+    return *value;
+}
+
+std::optional<double> parse_max_tolerance(const std::string& text) {
+    if (text == "auto") return std::nullopt;
+    const auto value = to_number<double>(text);
+    if (!value || !(*value > 0 && *value <= 1))
+        fail_value("--max-tolerance", text,
+                   "a share of the diameter is needed, above 0 and at most 1, such as 0.01, or auto");
+    return value;
+}
+
+double parse_resolution(const std::string& text) {
+    const auto value = to_number<double>(text);
+    if (!value || !(*value > 0 && *value < 1))
+        fail_value("--resolution", text,
+                   "a share of the diameter is needed, above 0 and below 1, such as 1e-6");
+    return *value;
+}
+
+double parse_time_limit(const std::string& text) {
+    const auto value = to_number<double>(text);
+    if (!value || !(*value > 0 && std::isfinite(*value)))
+        fail_value("--time-limit", text, "a number of seconds above 0 is needed");
+    return *value;
+}
+
+std::vector<std::string> type_letters() {
+    std::vector<std::string> letters;
+    letters.reserve(kAllSymmetryTypes.size());
+    for (const SymmetryType type : kAllSymmetryTypes) letters.emplace_back(option_letter(type));
+    return letters;
+}
+
+SymmetryType parse_type(const std::string& text) {
+    const std::vector<std::string> letters = type_letters();
+    for (std::size_t i = 0; i < letters.size(); ++i)
+        if (text == letters[i]) return kAllSymmetryTypes[i];
+    // Words and small letters are what people type instead.
+    constexpr std::array<std::string_view, 8> words = {
+        "mirror",      "inversion", "half-turn",           "rotation",
+        "translation", "glide",     "rotation-reflection", "screw"};
+    std::string lower;
+    for (const char c : text) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::string capital;
+    for (const char c : text) capital += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    std::string hint;
+    for (std::size_t i = 0; i < letters.size(); ++i)
+        if (capital == letters[i] || lower == words[i]) hint = "; did you mean " + letters[i] + "?";
+    fail("unknown type '" + text + "' in --types, which takes M,I,C2,C,T,Z,S,W" + hint);
+}
+
+TypeSet parse_types(const std::string& text) {
+    TypeSet types;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t end = std::min(text.find(',', at), text.size());
+        types.insert(parse_type(text.substr(at, end - at)));
+        at = end + 1;
+    }
+    return types;
+}
+
+/// One of `known`, of which the first is there in this version and the others are announced.
+void check_choice(const std::string& option, const std::string& value,
+                  const std::vector<std::string>& known) {
+    if (value == known.front()) return;
+    if (std::find(known.begin(), known.end(), value) != known.end())
+        fail(option + " " + value + " is not available yet in this version; use " + option + " " +
+             known.front());
+    fail("unknown value '" + value + "' of " + option + hint_for(value, known));
+}
+
+// The command line ----------------------------------------------------------------------------
+
+void declare(CLI::App& detect, Typed& typed) {
+    detect.add_option("INPUT", typed.input, "Model or points; - reads points from standard input")
+        ->required()
+        ->type_name("");
+    const auto add = [&](const char* name, std::string& value, const char* takes, const char* text) {
+        detect.add_option(name, value, text)->type_name(takes);
+    };
+    add("--json", typed.json, "FILE|-", "Write the full report; - is standard output");
+    add("--html", typed.html, "FILE", "Not available yet");
+    add("--method", typed.method, "paper", "Definition of a symmetry");
+    add("--types", typed.types, "M,I,C2,...", "Kinds to look for, see below (default: all)");
+    add("--points", typed.points, "vertices", "What represents a model");
+    add("--max-tolerance", typed.max_tolerance, "F|auto",
+        "Largest tolerance, a share of the diameter (default: auto)");
+    add("--resolution", typed.resolution, "F",
+        "Lengths this near are equal, a share of the diameter (default: 1e-6)");
+    add("--limit", typed.limit, "N", "Symmetries in the table (default: 20; 0: all)");
+    add("--threads", typed.threads, "N", "Most threads to use (default: 0, all cores)");
+    add("--time-limit", typed.time_limit, "S",
+        "Stop after so many seconds since the start, with what is found");
+    add("--columns", typed.columns, "x,y,label", "Meaning of the columns of points: x, y, z, label or skip");
+    detect.add_flag("--quiet", typed.quiet, "No progress, no notes; with --json FILE no table either");
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+/// What CLI11 has left over: an unknown command, an unknown option or one input too many.
+[[noreturn]] void fail_extras(const CLI::App& app, const CLI::App& detect) {
+    const std::vector<std::string> extras = app.remaining(true);
+    const auto option = std::find_if(extras.begin(), extras.end(), [](const std::string& word) {
+        return word.size() > 1 && word[0] == '-';
+    });
+    const CLI::App& where = detect.parsed() ? detect : app;
+    if (option != extras.end()) {
+        const std::string name = option->substr(0, option->find('='));
+        fail("unknown option " + name + hint_for(name, option_names(where)));
+    }
+    if (!detect.parsed()) {
+        const std::string hint = did_you_mean(extras.front(), {"detect"});
+        fail("unknown command '" + extras.front() + "'" +
+             (hint.empty() ? "; did you mean insym detect " + extras.front() + "?" : hint));
+    }
+    fail("one INPUT is read at a time, but '" + extras.front() + "' is given as well" + kHelpHint);
+}
+
+[[noreturn]] void fail_parse(const CLI::ParseError& error, const CLI::App& app, const CLI::App& detect) {
+    if (!app.remaining(true).empty()) fail_extras(app, detect);
+    const std::string what = error.what();
+    // CLI11 begins this one with the name of the option and a colon.
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
+        fail(what.substr(0, what.find(':')) + " takes exactly one value" + kHelpHint);
+    fail(what + kHelpHint);
+}
+
+/// CLI11 takes the word after an option as its value, even where that is another option or empty.
+void check_values(const CLI::App& detect) {
+    for (const CLI::Option* option : detect.get_options())
+        for (const std::string& value : option->results()) {
+            if (value.empty()) fail(option->get_name() + " is empty" + kHelpHint);
+            if (option->nonpositional() && value.starts_with("--"))
+                fail(option->get_name() + " needs a value, but the option " + value + " follows" + kHelpHint);
+        }
+}
+
+Options checked(const Typed& typed) {
+    Options options;
+    if (!typed.html.empty()) fail("--html is not available yet in this version; use --json for a report");
+    check_choice("--method", typed.method, {"paper", "robust"});
+    check_choice("--points", typed.points, {"vertices", "representative", "edges", "faces"});
+    options.input = typed.input;
+    options.json = typed.json == "/dev/stdout" ? "-" : typed.json;
+    options.detect.types = parse_types(typed.types);
+    options.detect.max_tolerance = parse_max_tolerance(typed.max_tolerance);
+    options.detect.resolution = parse_resolution(typed.resolution);
+    if (options.detect.max_tolerance && *options.detect.max_tolerance < options.detect.resolution)
+        fail("--max-tolerance " + typed.max_tolerance + " is below the resolution of " + typed.resolution +
+             "; raise it, or lower --resolution");
+    if (!typed.columns.empty()) options.read_points.columns = parse_columns(typed.columns);
+    constexpr int kMostListed = 1000000000, kMostThreads = 1024;
+    options.limit = parse_count("--limit", typed.limit, kMostListed);
+    options.threads = parse_count("--threads", typed.threads, kMostThreads);
+    if (!typed.time_limit.empty()) options.time_limit_s = parse_time_limit(typed.time_limit);
+    options.quiet = typed.quiet;
+    return options;
+}
+
+}  // namespace
+
+Command parse_command_line(int argc, const char* const* argv) {
+    CLI::App app("Finds the approximate incomplete symmetries of models and point sets.", "insym");
+    app.set_version_flag("--version", std::string("insym ") + INSYM_VERSION);
+    app.footer(kMainFooter);
+    Typed typed;
+    CLI::App& detect = *app.add_subcommand("detect", "Find the symmetries of a model or of points");
+    detect.footer(kDetectFooter);
+    declare(detect, typed);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        return {{}, app.help()};
+    } catch (const CLI::CallForVersion& version) {
+        return {{}, std::string(version.what()) + "\n"};
+    } catch (const CLI::ParseError& error) {
+        fail_parse(error, app, detect);
+    }
+    if (!detect.parsed()) fail("no command is given; see 'insym --help'");
+    check_values(detect);
+    return {checked(typed), {}};
+}
+
+}  // namespace insym::app

@@ -1,0 +1,32 @@
+// The command line: what was asked for, checked, in the library's words.
+#pragma once
+
+#include "insym/detect.hpp"
+#include "insym/read_points.hpp"
+
+#include <optional>
+#include <string>
+
+namespace insym::app {
+
+struct Options {
+    std::string input;  ///< a path, or "-" for standard input
+    std::string json;   ///< a path, "-" for standard output, empty for no report
+    DetectOptions detect;
+    ReadPointsOptions read_points;
+    int limit = 0;    ///< symmetries in the table, 0: all
+    int threads = 0;  ///< 0: all cores
+    std::optional<double> time_limit_s;
+    bool quiet = false;
+};
+
+/// What to do: run with `options`, or, if `text` is not empty, print it (help, version).
+struct Command {
+    Options options;
+    std::string text;
+};
+
+/// Throws Error(invalid_option) with a sentence that names the option and what it takes.
+Command parse_command_line(int argc, const char* const* argv);
+
+}  // namespace insym::app

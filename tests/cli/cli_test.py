@@ -1,0 +1,765 @@
+#!/usr/bin/python3
+"""The program insym from outside: cli_test.py PROGRAM [TEST...]; exit status 0 passed, 1 failed, 77 skipped.
+
+Oracle: the contract (report.md): for every input the exit status it names, exactly one sentence on
+standard error for a failure, no partial file, a report of the schema's shape; known answers for small
+sets of points; the same bytes for every number of threads.
+"""
+import math
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import traceback
+from pathlib import Path
+
+import numpy as np
+
+from program import CANNOT_READ, DONE, INVALID, STOPPED, USAGE, Box, assert_bad_input, assert_fails, one_sentence
+from report_schema import checked_report
+
+SHARED = Path(os.environ.get("INSYM_SHARED", Path(__file__).resolve().parents[2] / "../shared"))
+NOBODY = 65534
+
+
+class Skip(Exception):
+    """The test cannot run here; the sentence says why."""
+
+
+# Points -------------------------------------------------------------------------------------------
+
+def ring(n, dimension=3):
+    angle = 2 * np.pi * np.arange(n) / n
+    return np.column_stack([np.cos(angle), np.sin(angle), np.full(n, 0.5)][:dimension])
+
+
+def cloud(n):
+    return np.random.default_rng(5).uniform(size=(n, 3))
+
+
+def long_run(box):
+    """Arguments of a run that takes much longer than any of these tests waits."""
+    return box.points("cloud.xyz", cloud(4000)).name, "--max-tolerance", "0.05"
+
+
+def shared(name):
+    path = SHARED / name
+    if not path.exists():
+        raise Skip(f"{path} is not there")
+    return path.resolve()
+
+
+def need_brep():
+    if os.environ.get("INSYM_BREP", "ON").upper() not in ("ON", "1", "TRUE", "YES"):
+        raise Skip("the program was built without the reader of models")
+
+
+# Bad input, one by one ----------------------------------------------------------------------------
+
+def test_empty_file(box):
+    assert_bad_input(box, INVALID, "no points", box.write("a.xyz", "").name)
+
+
+def test_only_comments(box):
+    assert_bad_input(box, INVALID, "no points", box.write("a.csv", "# nothing\n\n// here\n").name)
+
+
+def test_one_point(box):
+    assert_bad_input(box, INVALID, "point", box.write("a.xyz", "1 2 3\n").name)
+
+
+def test_all_points_equal(box):
+    assert_bad_input(box, INVALID, "equal", box.write("a.xyz", "1 2 3\n" * 5).name)
+
+
+def test_mixed_columns(box):
+    assert_bad_input(box, INVALID, "a.txt:2: 4 columns", box.write("a.txt", "1 2\n1 2 3 4\n").name)
+
+
+def test_not_a_number(box):
+    assert_bad_input(box, INVALID, "a.xyz:2:", box.write("a.xyz", "1 2 3\n1 NaN 3\n").name)
+
+
+def test_infinity(box):
+    assert_bad_input(box, INVALID, "a.xyz:3:", box.write("a.xyz", "1 2 3\n3 2 1\n1 inf 3\n").name)
+
+
+def test_word(box):
+    assert_bad_input(box, INVALID, "a.xyz:1: 'one'", box.write("a.xyz", "one 2 3\n1 2 3\n").name)
+
+
+def test_number_too_large(box):
+    assert_bad_input(box, INVALID, "a.xyz:2: '1e999'", box.write("a.xyz", "1 2 3\n1e999 2 3\n").name)
+
+
+def test_distances_overflow(box):
+    assert_bad_input(box, INVALID, "overflow", box.write("a.xyz", "1e308 0 0\n-1e308 0 0\n0 1e308 0\n0 0 0\n").name)
+
+
+def test_label_not_whole(box):
+    assert_bad_input(box, INVALID, "a.xyz:1: the label 'x'", box.write("a.xyz", "1 2 3 x\n").name)
+
+
+def test_wrong_atom_count(box):
+    assert_bad_input(box, INVALID, "a.xyz:1:", box.write("a.xyz", "3\nwater\nO 0 0 0\nH 1 0 0\n").name)
+
+
+def test_binary_file(box):
+    assert_bad_input(box, CANNOT_READ, "binary", box.write("a.xyz", bytes(range(256)) * 20).name)
+
+
+def test_program_as_input(box):
+    shutil.copy(box.program, box.folder / "a.xyz")
+    assert_bad_input(box, CANNOT_READ, "binary", "a.xyz")
+
+
+def test_endless_device(box):
+    assert_bad_input(box, CANNOT_READ, "binary", "/dev/zero")
+
+
+def test_directory(box):
+    (box.folder / "a.xyz").mkdir()
+    assert_bad_input(box, CANNOT_READ, "directory", "a.xyz")
+
+
+def test_directory_named_step(box):
+    need_brep()
+    (box.folder / "a.step").mkdir()
+    assert_bad_input(box, CANNOT_READ, "directory", "a.step")
+
+
+def test_missing_file(box):
+    assert_bad_input(box, CANNOT_READ, "No such file", "none.xyz")
+
+
+def test_missing_step(box):
+    need_brep()
+    assert_bad_input(box, CANNOT_READ, "", "none.step")
+
+
+def test_truncated_step(box):
+    need_brep()
+    whole = shared("data/spinner4.stp").read_bytes()
+    for share in (0.01, 0.5, 0.99):
+        path = box.write("cut.step", whole[:int(share * len(whole))])
+        assert_bad_input(box, CANNOT_READ, "cut.step", path.name)
+
+
+def test_text_named_step(box):
+    need_brep()
+    assert_bad_input(box, CANNOT_READ, "STEP", box.write("a.stp", "1 2 3\n4 5 6\n").name)
+
+
+def test_empty_step(box):
+    need_brep()
+    assert_bad_input(box, CANNOT_READ, "", box.write("a.step", "").name)
+
+
+def test_step_without_geometry(box):
+    need_brep()
+    text = """ISO-10303-21;
+HEADER;
+FILE_DESCRIPTION((''),'2;1');
+FILE_NAME('empty','2024-01-01T00:00:00',(''),(''),'','','');
+FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));
+ENDSEC;
+DATA;
+#1=APPLICATION_CONTEXT('core data for automotive mechanical design processes');
+ENDSEC;
+END-ISO-10303-21;
+"""
+    assert_bad_input(box, INVALID, "geometry", box.write("a.step", text).name)
+
+
+def test_formats_not_there_yet(box):
+    for name in ("a.iges", "a.IGS", "a.brep", "a.stl", "a.obj", "a.ply", "a.off"):
+        assert_bad_input(box, CANNOT_READ, "not available yet", box.write(name, "x").name)
+
+
+# What nobody may read or write --------------------------------------------------------------------
+
+def as_nobody(box):
+    """Lets an unprivileged user run the program in the box; root may read and write everything."""
+    if os.getuid() != 0:
+        return {}
+    parent = box.folder
+    os.chmod(parent, 0o755)
+    rights = {"user": NOBODY, "group": NOBODY}
+    try:
+        if box.run("--version", **rights).returncode == 0:
+            return rights
+    except PermissionError:
+        pass
+    raise Skip("running as root, and the user nobody cannot run the program where it is")
+
+
+def test_no_permission_to_read(box):
+    path = box.points("a.xyz", ring(6))
+    path.chmod(0)
+    rights = as_nobody(box)
+    assert_fails(box, CANNOT_READ, "a.xyz: cannot be opened: Permission denied", "detect", "a.xyz", **rights)
+    if os.environ.get("INSYM_BREP", "ON") == "ON":
+        path.rename(box.folder / "a.step")
+        assert_fails(box, CANNOT_READ, "Permission denied", "detect", "a.step", **rights)
+
+
+def test_no_permission_to_write(box):
+    box.points("a.xyz", ring(6))
+    rights = as_nobody(box)
+    assert_fails(box, USAGE, "r.json: cannot be written: Permission denied", "detect", "a.xyz", "--json", "r.json", **rights)
+
+
+def test_read_only_report_is_kept(box):
+    box.points("a.xyz", ring(6))
+    box.write("r.json", "old").chmod(0o444)
+    rights = as_nobody(box)
+    if rights:
+        os.chmod(box.folder, 0o777)
+    assert_fails(box, USAGE, "r.json: cannot be written", "detect", "a.xyz", "--json", "r.json", **rights)
+    assert (box.folder / "r.json").read_text() == "old"
+
+
+def test_unwritable_output(box):
+    box.points("a.xyz", ring(6))
+    (box.folder / "folder").mkdir()
+    for target, says in (("none/r.json", "No such file"), ("folder", "directory"), ("a.xyz/r.json", "Not a directory")):
+        assert_fails(box, USAGE, says, "detect", "a.xyz", "--json", target)
+
+
+def test_unwritable_output_is_said_before_the_work(box):
+    start = time.monotonic()
+    assert_fails(box, USAGE, "cannot be written", "detect", *long_run(box), "--json", "none/r.json")
+    assert time.monotonic() - start < 30  # the work itself takes minutes
+
+
+def test_report_over_the_input(box):
+    path = box.points("a.xyz", ring(6))
+    before = path.read_bytes()
+    assert_fails(box, USAGE, "is the input itself", "detect", "a.xyz", "--json", "./a.xyz")
+    assert path.read_bytes() == before
+
+
+def test_full_disk(box):
+    box.points("a.xyz", ring(6))
+    done = box.run("detect", "a.xyz", "--json", "/dev/full")
+    assert done.returncode == USAGE and b"No space left" in done.stderr, done
+    one_sentence(done.stderr)
+    assert b"C rotation" in done.stdout  # the work is not lost
+    with open("/dev/full", "wb") as full:
+        for args in (["a.xyz"], ["a.xyz", "--json", "-"]):
+            done = box.run("detect", *args, stdout=full)
+            assert done.returncode == USAGE and b"No space left" in done.stderr, done
+            one_sentence(done.stderr)
+
+
+def test_file_size_limit(box):
+    box.points("a.xyz", cloud(300))
+    done = box.run("detect", "a.xyz", "--json", "r.json", "--quiet", "--max-tolerance", "1e-4",
+                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000)))
+    assert done.returncode == USAGE, done
+    one_sentence(done.stderr)
+    assert box.files() == ["a.xyz"], box.files()
+
+
+# Wrong usage --------------------------------------------------------------------------------------
+
+def test_no_command(box):
+    assert_fails(box, USAGE, "no command")
+    assert_fails(box, USAGE, "did you mean detect?", "detct", "a.xyz")
+    assert_fails(box, USAGE, "insym detect a.xyz", "a.xyz")
+    assert_fails(box, USAGE, "INPUT is required", "detect")
+    assert_fails(box, USAGE, "one INPUT", "detect", "a.xyz", "b.xyz")
+
+
+def test_unknown_option(box):
+    box.points("a.xyz", ring(6))
+    assert_fails(box, USAGE, "did you mean --max-tolerance?", "detect", "a.xyz", "--max-tol", "0.1")
+    assert_fails(box, USAGE, "did you mean --threads?", "detect", "a.xyz", "--thread=2")
+    assert_fails(box, USAGE, "unknown option --frobnicate", "detect", "a.xyz", "--frobnicate")
+    assert_fails(box, USAGE, "unknown option -z", "detect", "a.xyz", "-z")
+
+
+def test_missing_value(box):
+    box.points("a.xyz", ring(6))
+    assert_fails(box, USAGE, "--json", "detect", "a.xyz", "--json")
+    assert_fails(box, USAGE, "--json", "detect", "a.xyz", "--json", "--quiet")
+    assert_fails(box, USAGE, "--json", "detect", "a.xyz", "--json", "")
+
+
+def test_unknown_type(box):
+    box.points("a.xyz", ring(6))
+    assert_fails(box, USAGE, "unknown type 'Q'", "detect", "a.xyz", "--types", "C,Q")
+    assert_fails(box, USAGE, "did you mean M?", "detect", "a.xyz", "--types", "mirror")
+    assert_fails(box, USAGE, "--types", "detect", "a.xyz", "--types", "")
+    assert_fails(box, USAGE, "--types", "detect", "a.xyz", "--types", "C,,M")
+
+
+def test_unknown_method(box):
+    box.points("a.xyz", ring(6))
+    assert_fails(box, USAGE, "did you mean paper?", "detect", "a.xyz", "--method", "papper")
+
+
+def test_not_available_yet(box):
+    box.points("a.xyz", ring(6))
+    assert_fails(box, USAGE, "not available yet", "detect", "a.xyz", "--method", "robust")
+    assert_fails(box, USAGE, "not available yet", "detect", "a.xyz", "--html", "r.html")
+    for value in ("representative", "edges", "faces"):
+        assert_fails(box, USAGE, "not available yet", "detect", "a.xyz", "--points", value)
+
+
+def assert_bad_numbers(box, option, values):
+    box.points("a.xyz", ring(6))
+    for value in values:
+        assert_fails(box, USAGE, option, "detect", "a.xyz", option, value)
+        assert_fails(box, USAGE, option, "detect", "a.xyz", f"{option}={value}")
+
+
+def test_tolerance_zero(box):
+    assert_bad_numbers(box, "--max-tolerance", ["0", "0.0", "-0"])
+
+
+def test_tolerance_negative(box):
+    assert_bad_numbers(box, "--max-tolerance", ["-1", "-0.05", "-1e-300"])
+
+
+def test_tolerance_above_one(box):
+    assert_bad_numbers(box, "--max-tolerance", ["1.0000001", "5", "1e308", "1e999", "inf"])
+
+
+def test_tolerance_not_a_number(box):
+    assert_bad_numbers(box, "--max-tolerance", ["nan", "much", "0,05", "0.05mm", "5%"])
+
+
+def test_tolerance_below_resolution(box):
+    assert_bad_numbers(box, "--max-tolerance", ["1e-7"])
+    assert_fails(box, USAGE, "below the resolution", "detect", "a.xyz", "--resolution", "0.1", "--max-tolerance", "0.05")
+    report = box.report("a.xyz", "--resolution", "1e-8", "--max-tolerance", "1e-7")
+    assert math.isclose(report["options"]["max_tolerance"], 2e-7), report["options"]
+
+
+def test_other_numbers(box):
+    assert_bad_numbers(box, "--resolution", ["0", "-1", "1", "nan", "x"])
+    assert_bad_numbers(box, "--limit", ["-1", "1.5", "x", "99999999999"])
+    assert_bad_numbers(box, "--threads", ["-1", "1.5", "x", "100000"])
+    assert_bad_numbers(box, "--time-limit", ["0", "-1", "nan", "inf", "x"])
+
+
+def test_bad_columns(box):
+    assert_bad_numbers(box, "--columns", ["x", "x,y,q", "x,x,y", "x,y,"])
+
+
+def test_columns_for_a_model(box):
+    need_brep()
+    assert_fails(box, USAGE, "--columns", "detect", shared("data/spinner4.stp"), "--columns", "x,y,z")
+
+
+# Small sets with known answers --------------------------------------------------------------------
+
+def types_of(report):
+    return {(s["type"], s["order"]) for s in report["symmetries"]}
+
+
+def test_two_points(box):
+    report = box.report(box.points("a.xyz", [[0, 0, 0], [1, 0, 0]]).name)
+    assert len(report["points"]) == 2 and report["status"] == "complete"
+
+
+def test_nothing_found(box):
+    done = box.run("detect", box.points("a.xyz", [[0, 0, 0], [1, 0, 0], [0, 2.3, 0.1], [4, 0.7, 9]]).name, "--types", "W")
+    assert done.returncode == DONE and b"No symmetries found" in done.stdout, done
+
+
+def test_ring(box):
+    report = box.report(box.points("a.xyz", ring(7)).name)
+    best = [s for s in report["symmetries"] if s["type"] == "C" and s["order"] == 7]
+    assert best and best[0]["coverage"] == 1 and len(best[0]["cycles"][0]["points"]) == 7, types_of(report)
+
+
+def test_collinear(box):
+    x = np.outer(np.arange(6), [2.0, 1.0, 0.5])
+    report = box.report(box.points("a.xyz", x).name, "--types", "T")
+    steps = [s["isometry"]["step"] for s in report["symmetries"]]
+    assert any(math.isclose(step, math.sqrt(5.25), rel_tol=1e-9) for step in steps), steps
+
+
+def test_coplanar_in_space(box):
+    x = np.array([[3.0 * i, 2.0 * j, 5.0] for i in range(4) for j in range(3)])
+    report = box.report(box.points("a.xyz", x).name)
+    assert report["input"]["dimension"] == 3 and report["status"] == "complete"
+    assert any(math.isclose(s["isometry"]["step"], 3) for s in report["symmetries"] if s["type"] == "T")
+
+
+def test_plane(box):
+    report = box.report(box.points("a.txt", ring(5, 2)).name)
+    assert report["input"]["dimension"] == 2 and ("C", 5) in types_of(report), types_of(report)
+
+
+def test_labels_from_columns(box):
+    x = np.column_stack([ring(6, 2), np.arange(6) % 2])
+    report = box.report(box.points("a.txt", x).name, "--columns", "x,y,label")
+    assert report["labels"] == [0, 1, 0, 1, 0, 1]
+    assert ("C", 6) not in types_of(report) and ("C", 3) in types_of(report), types_of(report)
+
+
+def test_chemists_xyz(box):
+    rows = "".join(f"{'C' if i % 2 else 'H'} {x!r} {y!r} {z!r}\n" for i, (x, y, z) in enumerate(ring(8).tolist()))
+    report = box.report(box.write("a.xyz", "8\nring of two elements\n" + rows).name)
+    assert report["labels"] == [1, 6] * 4 and ("C", 4) in types_of(report) and ("C", 8) not in types_of(report)
+
+
+def test_further_frames_are_noted(box):
+    frame = "3\n\nC 0 0 0\nC 1 0 0\nC 0 1 0\n"
+    path = box.write("a.xyz", frame * 2).name
+    done = box.run("detect", path, "--json", "-")
+    assert done.returncode == DONE and "a.xyz:6:" in one_sentence(done.stderr)
+    report = checked_report(done.stdout)
+    assert len(report["points"]) == 3 and report["diagnostics"][0]["code"] == "frames_skipped"
+    assert not box.run("detect", path, "--json", "-", "--quiet").stderr
+
+
+def test_csv_with_header(box):
+    text = "X;Y;Z\r\n" + "".join(f"{x!r};{y!r};{z!r}\r\n" for x, y, z in ring(5).tolist())
+    report = box.report(box.write("a.csv", text).name)
+    assert report["input"]["format"] == "csv" and ("C", 5) in types_of(report)
+
+
+def test_standard_input(box):
+    text = "".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in ring(6).tolist())
+    report = box.report("-", input=text.encode())
+    assert report["input"]["path"] == "-" and ("C", 6) in types_of(report)
+    done = box.run("detect", "-", input=b"1 2 3\n1 x 3\n")
+    assert done.returncode == INVALID and "standard input:2: 'x'" in one_sentence(done.stderr)
+    assert box.run("detect", "-", input=b"").returncode == INVALID
+
+
+def test_step_model(box):
+    need_brep()
+    path = shared("data/spinner4.stp")
+    done = box.run("detect", path, "--max-tolerance", "1e-3", "--json", "r.json")
+    assert done.returncode == DONE and b"84 vertices" in done.stdout, done
+    report = checked_report((box.folder / "r.json").read_bytes())
+    assert report["input"]["format"] == "step" and report["options"]["points"] == "vertices"
+    assert len(report["entities"]) == 84 and ("C", 4) in types_of(report)
+
+
+def test_definitions_hold(box):
+    data, checker = shared("data/spinner4_vertices.xyz"), shared("spec/check_report.py")
+    # Without C2: the checker takes half-turns, which have type C, for rotations that no cycles confirm.
+    done = box.run("detect", data, "--max-tolerance", "1e-3", "--types", "M,I,C,T,Z,S,W", "--json", "r.json", "--quiet")
+    assert done.returncode == DONE and not done.stdout and not done.stderr, done
+    check = subprocess.run([sys.executable, checker, "r.json", "--max", "60"], cwd=box.folder, capture_output=True)
+    assert check.returncode == 0, check.stdout.decode()
+
+
+# Where the results go -----------------------------------------------------------------------------
+
+def test_table_and_report(box):
+    path = box.points("a.xyz", ring(6)).name
+    table = box.run("detect", path)
+    assert b"a.xyz: 6 points" in table.stdout and b"C rotation" in table.stdout and not table.stderr
+    both = box.run("detect", path, "--json", "r.json")
+    assert b"C rotation" in both.stdout and checked_report((box.folder / "r.json").read_bytes())
+    assert checked_report(box.run("detect", path, "--json", "-").stdout)
+    assert checked_report(box.run("detect", path, "--json", "/dev/stdout").stdout)
+    assert box.files() == ["a.xyz", "r.json"]
+
+
+def test_quiet(box):
+    path = box.points("a.xyz", np.vstack([ring(6), ring(6)])).name  # merged points are noted
+    loud, quiet = box.run("detect", path), box.run("detect", path, "--quiet")
+    assert b"merged" in loud.stderr and b"C rotation" in loud.stdout
+    assert not quiet.stderr and b"C rotation" in quiet.stdout
+    silent = box.run("detect", path, "--quiet", "--json", "r.json")
+    assert silent.returncode == DONE and not silent.stderr and not silent.stdout
+    assert checked_report((box.folder / "r.json").read_bytes())["input"]["merged_points"] == 6
+
+
+def test_limit(box):
+    path = box.points("a.xyz", ring(12)).name
+    count = len(box.report(path)["symmetries"])
+    assert count > 2
+    assert f"{count - 2} more; --limit 0 shows all" in box.run("detect", path, "--limit", "2").stdout.decode()
+    assert b" more;" not in box.run("detect", path, "--limit", "0").stdout
+
+
+def test_types_are_chosen(box):
+    path = box.points("a.xyz", ring(6)).name
+    report = box.report(path, "--types", "M,C2")
+    assert report["options"]["types"] == ["M", "C2"]
+    found = types_of(report)
+    assert found and all(t == "M" or (t, order) == ("C", 2) for t, order in found), found
+
+
+def test_report_replaces_whole_files_only(box):
+    path = box.points("a.xyz", ring(6)).name
+    (box.folder / "real.json").write_text("old")
+    os.chmod(box.folder / "real.json", 0o640)
+    (box.folder / "link.json").symlink_to("real.json")
+    assert box.run("detect", path, "--json", "link.json").returncode == DONE
+    assert (box.folder / "link.json").is_symlink() and (box.folder / "real.json").stat().st_mode & 0o777 == 0o640
+    checked_report((box.folder / "real.json").read_bytes())
+    box.write("bad.xyz", "1 2 3\n1 2 x\n")
+    (box.folder / "real.json").write_text("old")
+    assert box.run("detect", "bad.xyz", "--json", "real.json").returncode == INVALID
+    assert (box.folder / "real.json").read_text() == "old"
+    assert box.files() == ["a.xyz", "bad.xyz", "link.json", "real.json"]
+
+
+def test_report_into_devices_and_pipes(box):
+    path = box.points("a.xyz", ring(6)).name
+    assert box.run("detect", path, "--json", "/dev/null", "--quiet").returncode == DONE
+    assert os.path.exists("/dev/null") and not os.path.isfile("/dev/null")
+    os.mkfifo(box.folder / "pipe")
+    got = []
+    reader = threading.Thread(target=lambda: got.append((box.folder / "pipe").read_bytes()))
+    reader.start()
+    assert box.run("detect", path, "--json", "pipe", "--quiet").returncode == DONE
+    reader.join(10)
+    checked_report(got[0])
+
+
+def run_with_closed_reader(box, *args):
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    try:
+        return box.run(*args, stdout=write_end)
+    finally:
+        os.close(write_end)
+
+
+def test_reader_has_gone(box):
+    path = box.points("a.xyz", ring(12)).name
+    for args in (["--limit", "0"], ["--json", "-"], ["--json", "r.json"]):
+        done = run_with_closed_reader(box, "detect", path, *args)
+        assert done.returncode == DONE and not done.stderr, (args, done)
+    checked_report((box.folder / "r.json").read_bytes())
+    for args in (["--help"], ["--version"]):
+        done = run_with_closed_reader(box, *args)
+        assert done.returncode == DONE and not done.stderr, (args, done)
+
+
+def test_reader_stops_early(box):
+    box.points("a.xyz", ring(24))
+    line = f"'{box.program}' detect a.xyz --json - | head -1; exit ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["bash", "-c", line], cwd=box.folder, capture_output=True, timeout=60)
+    assert done.returncode == DONE and done.stdout == b"{\n" and not done.stderr, done
+
+
+def test_standard_output_closed(box):
+    box.points("a.xyz", ring(6))
+    for line, status in ((">&-", USAGE), ("--json - >&-", USAGE), ("--json r.json --quiet >&-", DONE),
+                         ("--json s.json --quiet >&- 2>&- <&-", DONE)):
+        done = subprocess.run(["bash", "-c", f"'{box.program}' detect a.xyz {line}"], cwd=box.folder, capture_output=True)
+        assert done.returncode == status, (line, done)
+        if status == USAGE:
+            one_sentence(done.stderr)
+    for name in ("r.json", "s.json"):
+        checked_report((box.folder / name).read_bytes())
+
+
+def test_strange_file_names(box):
+    for name in (b"caf\xc3\xa9 %s.xyz", b"\xff\xfe.xyz", b"a\nb\x1b[1m.xyz"):
+        path = os.path.join(os.fsencode(box.folder), name)
+        with open(path, "wb") as file:
+            file.write(b"".join(b"%r %r %r\n" % tuple(row) for row in ring(5).tolist()))
+        done = subprocess.run([box.program, "detect", path, "--json", "-"], capture_output=True)
+        assert done.returncode == DONE, done
+        assert checked_report(done.stdout)["input"]["path"] == path.decode("utf-8", "replace")
+        missing = subprocess.run([box.program, "detect", path + b"z"], capture_output=True)
+        assert missing.returncode == CANNOT_READ and missing.stderr.count(b"\n") == 1, missing
+
+
+def test_help_and_version(box):
+    for args in (["--help"], ["-h"], ["detect", "--help"]):
+        done = box.run(*args)
+        assert done.returncode == DONE and not done.stderr and b"Exit status" in done.stdout, done
+    text = box.run("detect", "--help").stdout.decode()
+    for option in ("--json", "--types", "--max-tolerance", "--resolution", "--limit", "--threads", "--time-limit",
+                   "--columns", "--quiet", "Examples"):
+        assert option in text, option
+    assert re.fullmatch(r"insym \d+\.\d+\.\d+\n", box.run("--version").stdout.decode())
+
+
+# Stopping early -----------------------------------------------------------------------------------
+
+def wait_until_signals_are_handled(run):
+    """Until the program has set up its handlers, a signal would end it like any other."""
+    for _ in range(600):
+        assert run.poll() is None, "the run is over before the signal: it is too short for this test"
+        caught = re.search(r"^SigCgt:\s*([0-9a-f]+)", Path(f"/proc/{run.pid}/status").read_text(), re.MULTILINE)
+        if int(caught[1], 16) >> (signal.SIGINT - 1) & 1:
+            return
+        time.sleep(0.1)
+    raise AssertionError("no handler for SIGINT")
+
+
+def stop_with_signal(box, number, delay):
+    run = box.start("detect", *long_run(box), "--json", "r.json")
+    wait_until_signals_are_handled(run)
+    time.sleep(delay)
+    assert run.poll() is None, "the run is over before the signal: it is too short for this test"
+    start = time.monotonic()
+    run.send_signal(number)
+    out, err = run.communicate(timeout=60)
+    assert time.monotonic() - start < 30, "the program does not stop soon"
+    return run.returncode, out, err
+
+
+def test_interrupt(box):
+    for number, delay in ((signal.SIGINT, 1.0), (signal.SIGTERM, 0.0)):
+        status, out, err = stop_with_signal(box, number, delay)
+        assert status == STOPPED, (status, err)
+        assert "interrupt" in one_sentence(err) and b"Stopped by an interrupt" in out
+        assert checked_report((box.folder / "r.json").read_bytes())["status"] == "cancelled"
+        assert box.files() == ["cloud.xyz", "r.json"]
+        (box.folder / "r.json").unlink()
+
+
+def test_second_interrupt_ends_at_once(box):
+    run = box.start("detect", *long_run(box), "--json", "r.json")
+    wait_until_signals_are_handled(run)
+    run.send_signal(signal.SIGSTOP)  # both wait until it goes on
+    run.send_signal(signal.SIGINT)
+    run.send_signal(signal.SIGTERM)
+    run.send_signal(signal.SIGCONT)
+    run.communicate(timeout=10)
+    assert run.returncode in (-signal.SIGINT, -signal.SIGTERM), run.returncode
+    assert box.files() == ["cloud.xyz"], box.files()
+
+
+def test_interrupt_while_reading_standard_input(box):
+    run = subprocess.Popen([box.program, "detect", "-", "--json", "r.json"], stdin=subprocess.PIPE,
+                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=box.folder)
+    time.sleep(0.5)
+    run.send_signal(signal.SIGINT)
+    assert run.wait(timeout=10) == -signal.SIGINT
+    run.communicate()
+    assert not box.files()
+
+
+def test_time_limit(box):
+    args = long_run(box)
+    for limit in ("0.01", "1"):
+        start = time.monotonic()
+        done = box.run("detect", *args, "--time-limit", limit, "--json", "r.json")
+        assert time.monotonic() - start < float(limit) + 30
+        assert done.returncode == STOPPED, done
+        assert "time limit" in one_sentence(done.stderr) and b"Stopped at the time limit" in done.stdout
+        assert checked_report((box.folder / "r.json").read_bytes())["status"] == "time_limit"
+
+
+def test_time_limit_of_a_model(box):
+    need_brep()
+    done = box.run("detect", shared("data/Ventilator.stp"), "--time-limit", "0.01", "--json", "-")
+    assert done.returncode == STOPPED and checked_report(done.stdout)["status"] == "time_limit", done
+
+
+def test_time_limit_that_is_not_reached(box):
+    done = box.run("detect", box.points("a.xyz", ring(6)).name, "--time-limit", "1e300")
+    assert done.returncode == DONE and not done.stderr, done
+
+
+# Progress -----------------------------------------------------------------------------------------
+
+def run_in_terminal(box, *args):
+    """Returns what the program writes to a terminal as its standard error."""
+    import pty
+    leader, follower = pty.openpty()
+    run = subprocess.Popen([box.program, *args], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=follower,
+                           cwd=box.folder)
+    os.close(follower)
+    written = b""
+    while True:
+        try:
+            data = os.read(leader, 65536)
+        except OSError:
+            break
+        if not data:
+            break
+        written += data
+    os.close(leader)
+    run.wait(timeout=60)
+    return written.decode()
+
+
+def screen_of(written):
+    """What a terminal shows in the end: lines, overwritten after a carriage return."""
+    lines = []
+    for line in written.replace("\r\n", "\n").split("\n"):
+        shown = []
+        for part in line.split("\r"):
+            shown[:len(part)] = part
+        lines.append("".join(shown).rstrip())
+    return "\n".join(lines).strip()
+
+
+def test_progress_only_on_a_terminal(box):
+    args = ["detect", *long_run(box), "--time-limit", "2"]
+    written = run_in_terminal(box, *args)
+    assert "%" in written and len(written.split("\r")) > 5, written
+    assert re.fullmatch(r"insym: stopped at the time limit[^\n]*", screen_of(written)), screen_of(written)
+    assert run_in_terminal(box, *args, "--quiet") == ""
+    assert b"%" not in box.run(*args).stderr
+
+
+# The same bytes -----------------------------------------------------------------------------------
+
+def without_timing(data):
+    text, times = re.subn(rb'^"timing": .*$', b"", data, flags=re.MULTILINE)
+    assert times == 1
+    return text
+
+
+def assert_same_bytes(box, *args):
+    reports = set()
+    for threads in (1, 2, 4, 1, 2, 4):
+        done = box.run("detect", *args, "--threads", str(threads), "--json", "-", "--quiet")
+        assert done.returncode == DONE, done
+        checked_report(done.stdout)
+        reports.add(without_timing(done.stdout))
+    assert len(reports) == 1, f"{len(reports)} different reports"
+
+
+def test_same_bytes_for_any_threads(box):
+    rng = np.random.default_rng(3)
+    x = np.vstack([ring(8), ring(8) * [2, 2, 1], rng.uniform(-2, 2, size=(60, 3))])
+    assert_same_bytes(box, box.points("a.xyz", x + rng.normal(scale=1e-4, size=x.shape)).name, "--max-tolerance", "0.01")
+
+
+def test_same_bytes_for_real_vertices(box):
+    assert_same_bytes(box, shared("data/spinner4_vertices.xyz"), "--max-tolerance", "1e-3")
+
+
+# --------------------------------------------------------------------------------------------------
+
+def run_test(program, name):
+    with tempfile.TemporaryDirectory(prefix="insym_cli_") as folder:
+        try:
+            globals()[name](Box(program, folder))
+            return "passed"
+        except Skip as why:
+            print(f"{name} skipped: {why}")
+            return "skipped"
+        except Exception:
+            traceback.print_exc()
+            return "failed"
+
+
+def main():
+    program = str(Path(sys.argv[1]).resolve())
+    names = sys.argv[2:] or [name for name in globals() if name.startswith("test_")]
+    outcomes = []
+    for name in names:
+        outcomes.append(run_test(program, name))
+        print(f"{name}: {outcomes[-1]}", flush=True)
+    sys.exit(1 if "failed" in outcomes else 77 if set(outcomes) == {"skipped"} else 0)
+
+
+if __name__ == "__main__":
+    main()
