@@ -1,6 +1,7 @@
 // What the stages ask while they run: may I go on? And what they tell: how far am I?
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
@@ -32,7 +33,9 @@ public:
         const std::scoped_lock lock(mutex_);
         stage_ = name;
         work_ = work;
+        reported_ = 0;
         done_.store(0, std::memory_order_relaxed);
+        report(0);
     }
 
     /// One more of the stage's pieces of work is done.
@@ -40,13 +43,7 @@ public:
         const std::size_t done = done_.fetch_add(1, std::memory_order_relaxed) + 1;
         if (!context_.on_progress) return;
         const std::unique_lock lock(mutex_, std::try_to_lock);
-        if (!lock) return;
-        const auto now = std::chrono::steady_clock::now();
-        if (now - last_report_ < context_.progress_interval) return;
-        last_report_ = now;
-        reported_ = stage_ == reported_stage_ ? std::max(reported_, done) : done;
-        reported_stage_ = stage_;
-        context_.on_progress({stage_, static_cast<double>(reported_) / static_cast<double>(std::max<std::size_t>(work_, 1))});
+        if (lock) report(done);
     }
 
     void log(LogLevel level, std::string_view message) const {
@@ -60,12 +57,20 @@ private:
         return true;
     }
 
+    /// Under the lock; never backwards within a stage.
+    void report(std::size_t done) {
+        const auto now = std::chrono::steady_clock::now();
+        if (!context_.on_progress || now - last_report_ < context_.progress_interval) return;
+        last_report_ = now;
+        reported_ = std::max(reported_, done);
+        context_.on_progress({stage_, static_cast<double>(reported_) / static_cast<double>(std::max<std::size_t>(work_, 1))});
+    }
+
     const RunContext& context_;
     std::atomic<RunStatus> status_{RunStatus::complete};
     std::atomic<std::size_t> done_{0};
     std::mutex mutex_;
     std::string_view stage_;
-    std::string_view reported_stage_;
     std::size_t work_ = 0;
     std::size_t reported_ = 0;
     std::chrono::steady_clock::time_point last_report_{};

@@ -146,8 +146,10 @@ LengthUnit find_length_unit(const StepData_StepModel& model) {
     std::optional<double> millimetres;
     for (Standard_Integer i = 1; i <= model.NbEntities(); ++i) {
         const auto units = declared_units(model.Value(i));
+        if (units.IsNull()) continue;
         STEPConstruct_UnitContext factors;
-        if (units.IsNull() || factors.ComputeFactors(units) > 0 || !factors.LengthDone()) continue;
+        factors.ComputeFactors(units);
+        if (!factors.LengthDone()) continue;
         if (millimetres && *millimetres != factors.LengthFactor()) return kMillimetre;
         millimetres = factors.LengthFactor();
     }

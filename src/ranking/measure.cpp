@@ -62,7 +62,9 @@ void Measure::fit(Symmetry& symmetry) const {
 }
 
 void Measure::cover(Symmetry& symmetry) const {
-    const double reach = std::max({symmetry.tolerance.min, symmetry.deviation.max, scene_.resolution});
+    // A hair more, so that the point that is farthest off does not miss itself by rounding.
+    const double exact_reach = std::max({symmetry.tolerance.min, symmetry.deviation.max, scene_.resolution});
+    const double reach = exact_reach + std::max(5e-7 * exact_reach, 1e-5 * scene_.resolution);
     int covered = 0;
     symmetry.fixed_points.clear();
     for (int i = 0; i < scene_.size(); ++i) {

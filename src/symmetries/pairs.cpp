@@ -37,36 +37,55 @@ struct TwoPairFit {
     double mirror = 0;
     double inversion = 0;
     double half_turn = 0;
+
+    /// The largest residual of a type that fits as well as any (definitions, section 6).
+    double limit(const Scene& scene) const {
+        return std::min(scene.max_tolerance, 2 * std::min({mirror, inversion, half_turn}) + scene.resolution);
+    }
 };
 
-/// Two pairs p +- u and q +- v, w = q - p. See fit_pairs() for K, whose eigenvectors give the normal
-/// of the best mirror and the axis of the best half-turn.
-TwoPairFit fit_two_pairs(const Vector3d& u, const Vector3d& v, const Vector3d& w, int dimension) {
-    Matrix3d k = u * u.transpose() + v * v.transpose() - w * w.transpose() / 2;
-    const auto larger = [](double a, double b) { return 2 * std::sqrt(std::max({a, b, 0.0})); };
-    const double ww = w.squaredNorm() / 4;
+/// Two pairs p +- u and q +- v, w = q - p. See fit_pairs() for K, whose eigenvectors `axes`, least first, give the axis
+/// of the best half-turn and the normal of the best mirror.
+TwoPairFit residuals(const Vector3d& u, const Vector3d& v, const Vector3d& w, const Matrix3d& axes, int dimension) {
+    const auto rejection = [](const Vector3d& x, const Vector3d& n) { return (x - n * n.dot(x)).squaredNorm(); };
     TwoPairFit fit;
-    fit.inversion = std::sqrt(4 * ww);
-    const auto mirror_along = [&](const Vector3d& n) {
-        const double un = u.dot(n), vn = v.dot(n), wn = w.dot(n);
-        return larger(u.squaredNorm() - un * un + wn * wn / 4, v.squaredNorm() - vn * vn + wn * wn / 4);
-    };
+    fit.inversion = w.norm();
+    const Vector3d n = axes.col(dimension - 1);
+    const double across = w.dot(n) * w.dot(n) / 4;
+    fit.mirror = 2 * std::sqrt(std::max(rejection(u, n), rejection(v, n)) + across);
+    fit.half_turn = fit.inversion;
+    if (dimension == 2) return fit;
+    const Vector3d a = axes.col(0);
+    const double along = std::max(u.dot(a) * u.dot(a), v.dot(a) * v.dot(a));
+    fit.half_turn = 2 * std::sqrt(along + rejection(w, a) / 4);
+    return fit;
+}
+
+Matrix3d pair_axes(const Matrix3d& k, int dimension, bool exactly) {
+    Matrix3d axes = Matrix3d::Identity();
     if (dimension == 2) {
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
-        solver.computeDirect(Eigen::Matrix2d(k.topLeftCorner<2, 2>()));
-        Vector3d n = Vector3d::Zero();
-        n.head<2>() = solver.eigenvectors().col(1);
-        fit.mirror = mirror_along(n);
-        fit.half_turn = fit.inversion;
-        return fit;
+        const Eigen::Matrix2d block = k.topLeftCorner<2, 2>();
+        axes.topLeftCorner<2, 2>() = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(block).eigenvectors();
+        return axes;
     }
     Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
-    solver.computeDirect(k);
-    fit.mirror = mirror_along(solver.eigenvectors().col(2));
-    const Vector3d a = solver.eigenvectors().col(0);
-    const double ua = u.dot(a), va = v.dot(a), wa = w.dot(a);
-    fit.half_turn = larger(ua * ua + ww - wa * wa / 4, va * va + ww - wa * wa / 4);
-    return fit;
+    if (exactly)
+        solver.compute(k);
+    else
+        solver.computeDirect(k);
+    return solver.eigenvectors();
+}
+
+TwoPairFit fit_two_pairs(const Scene& scene, const Vector3d& u, const Vector3d& v, const Vector3d& w) {
+    const Matrix3d k = u * u.transpose() + v * v.transpose() - w * w.transpose() / 2;
+    const int dimension = scene.dimension();
+    const TwoPairFit fit = residuals(u, v, w, pair_axes(k, dimension, false), dimension);
+    // The direct solution is quick and good to half the digits; a close call deserves the exact one.
+    const double limit = fit.limit(scene);
+    const double doubt = 1e-3 * limit + 1e-7 * scene.diameter;
+    const bool close = std::abs(fit.mirror - limit) <= doubt || std::abs(fit.inversion - limit) <= doubt ||
+                       std::abs(fit.half_turn - limit) <= doubt;
+    return close ? residuals(u, v, w, pair_axes(k, dimension, true), dimension) : fit;
 }
 
 /// An edge of the graph of pairs, for M and for I (in 2D the half-turn).
@@ -76,11 +95,17 @@ struct PairEdge {
     Pair second;
 };
 
+/// The kind whose isometry is x -> 2c - x.
+SymmetryType central_type(int dimension) {
+    return dimension == 3 ? SymmetryType::inversion : SymmetryType::half_turn;
+}
+
 /// What the pairs with one first point gave.
 struct Findings {
     std::vector<PairEdge> mirror_edges;
     std::vector<PairEdge> central_edges;
-    std::vector<Pair> lone_mirrors;  // pairs with three points and more on their own plane
+    std::vector<Pair> lone_mirrors;  // pairs that could be listed by themselves
+    std::vector<Pair> lone_centres;
     std::vector<PairCluster> half_turns;
 };
 
@@ -99,7 +124,9 @@ private:
 
     void collect_matches();
     void examine(int q, int image, double tolerance);
+    SymmetryType central_type() const { return insym::central_type(scene_.dimension()); }
     int points_on_own_plane() const;
+    int points_in_own_middle() const;
     void group_by_axis();
     void group_at(double level);
     void report_group(double level, const Vector3d& middle, const Vector3d& axis);
@@ -149,8 +176,13 @@ void PairSearch::search(int second) {
     between_known_ = false;
     matches_.clear();
     collect_matches();
-    if (types_.contains(SymmetryType::mirror) && points_on_own_plane() >= kLeastForLonePair)
-        out_.lone_mirrors.push_back(pair_);
+    if (types_.contains(SymmetryType::mirror)) {
+        const int fixed = points_on_own_plane();
+        if (fixed >= kLeastForLonePair || fixed + 2 == scene_.size()) out_.lone_mirrors.push_back(pair_);
+    }
+    // A centre fixes one point at most: alone, a pair covers the set only with that point or none.
+    if (types_.contains(central_type()) && scene_.size() <= 3 && points_in_own_middle() + 2 == scene_.size())
+        out_.lone_centres.push_back(pair_);
     if (types_.contains(SymmetryType::half_turn) && scene_.dimension() == 3) group_by_axis();
 }
 
@@ -183,14 +215,12 @@ void PairSearch::collect_matches() {
 void PairSearch::examine(int q, int image, double tolerance) {
     const Vector3d p1 = at(pair_.first), p2 = at(pair_.second), q1 = at(q), q2 = at(image);
     const Vector3d u = (p2 - p1) / 2, v = (q2 - q1) / 2, w = (q1 + q2) / 2 - (p1 + p2) / 2;
-    const TwoPairFit fit = fit_two_pairs(u, v, w, scene_.dimension());
-    const double limit = std::min(
-        scene_.max_tolerance, 2 * std::min({fit.mirror, fit.inversion, fit.half_turn}) + scene_.resolution);
+    const TwoPairFit fit = fit_two_pairs(scene_, u, v, w);
+    const double limit = fit.limit(scene_);
     const Pair other = {std::min(q, image), std::max(q, image)};
     if (types_.contains(SymmetryType::mirror) && fit.mirror <= limit)
         out_.mirror_edges.push_back({tolerance, pair_, other});
-    const SymmetryType central = scene_.dimension() == 3 ? SymmetryType::inversion : SymmetryType::half_turn;
-    if (types_.contains(central) && fit.inversion <= limit) out_.central_edges.push_back({tolerance, pair_, other});
+    if (types_.contains(central_type()) && fit.inversion <= limit) out_.central_edges.push_back({tolerance, pair_, other});
     if (fit.half_turn <= limit && scene_.dimension() == 3) matches_.push_back({{q, image}, tolerance, w, v, w.norm()});
 }
 
@@ -200,6 +230,13 @@ int PairSearch::points_on_own_plane() const {
     int count = 0;
     for (std::size_t q = 0; q < a_.size(); ++q)
         count += std::abs((a_[q] - b_[q]) * (a_[q] + b_[q])) <= limit ? 1 : 0;
+    return count;
+}
+
+int PairSearch::points_in_own_middle() const {
+    const Vector3d middle = (at(pair_.first) + at(pair_.second)) / 2;
+    int count = 0;
+    grid_.visit_ball(to_point(middle), scene_.resolution / 2, [&](int, double) { return ++count > 0; });
     return count;
 }
 
@@ -391,7 +428,7 @@ void keep_largest(std::vector<PairCluster>& sets) {
 
 std::vector<PairCluster> detect_pairs(const Scene& scene, TypeSet types, RunMonitor& monitor) {
     std::vector<PairCluster> clusters;
-    const SymmetryType central = scene.dimension() == 3 ? SymmetryType::inversion : SymmetryType::half_turn;
+    const SymmetryType central = central_type(scene.dimension());
     const bool wanted = types.contains(SymmetryType::mirror) || types.contains(SymmetryType::half_turn) ||
                         types.contains(central);
     if (!wanted) return clusters;
@@ -416,12 +453,13 @@ std::vector<PairCluster> detect_pairs(const Scene& scene, TypeSet types, RunMoni
         append(all.mirror_edges, f.mirror_edges);
         append(all.central_edges, f.central_edges);
         append(all.lone_mirrors, f.lone_mirrors);
+        append(all.lone_centres, f.lone_centres);
         append(all.half_turns, f.half_turns);
         f = Findings{};
     }
     if (types.contains(SymmetryType::mirror))
         cluster_edges(scene, SymmetryType::mirror, all.mirror_edges, all.lone_mirrors, clusters);
-    if (types.contains(central)) cluster_edges(scene, central, all.central_edges, {}, clusters);
+    if (types.contains(central)) cluster_edges(scene, central, all.central_edges, all.lone_centres, clusters);
     keep_largest(all.half_turns);
     append(clusters, all.half_turns);
     return clusters;
