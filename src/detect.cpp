@@ -1,6 +1,5 @@
 #include "insym/detect.hpp"
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include "run_monitor.hpp"
 #include "scene.hpp"
 #include "symmetries/detect_symmetries.hpp"
+#include "parallel_for.hpp"
 
 namespace insym {
 namespace {
@@ -77,7 +77,7 @@ bool listed(const Symmetry& s) {
 
 void measure_all(const Scene& scene, std::vector<Symmetry>& symmetries) {
     const Measure measure(scene);
-    tbb::parallel_for(std::size_t{0}, symmetries.size(), [&](std::size_t i) { measure.complete(symmetries[i]); });
+    parallel_for(symmetries.size(), [&](std::size_t i) { measure.complete(symmetries[i]); });
     std::erase_if(symmetries, [](const Symmetry& s) { return !listed(s); });
     rank(symmetries);
 }

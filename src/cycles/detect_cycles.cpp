@@ -1,13 +1,13 @@
 #include "cycles/detect_cycles.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
 #include "cycles/chain.hpp"
 #include "cycles/chain_memo.hpp"
 #include "cycles/types.hpp"
+#include "parallel_for.hpp"
 
 namespace insym {
 namespace {
@@ -336,7 +336,7 @@ bool Expansion::extend(std::vector<int>& sequence) {
 CycleSearchResult detect_cycles(const Scene& scene, RunMonitor& monitor) {
     monitor.begin_stage("cycles", static_cast<std::size_t>(scene.size()));
     tbb::enumerable_thread_specific<Expansion> expansions([&] { return Expansion(scene, monitor); });
-    tbb::parallel_for(0, scene.size(), [&](int apex) {
+    parallel_for(scene.size(), [&](int apex) {
         expansions.local().expand_apex(apex);
         monitor.advance();
     });

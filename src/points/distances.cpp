@@ -1,11 +1,11 @@
 #include "points/distances.hpp"
 
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <numeric>
 
 #include "points/diameter.hpp"
+#include "parallel_for.hpp"
 
 namespace insym {
 
@@ -18,7 +18,7 @@ Distances::Distances(const std::vector<Point>& positions)
       sorted_(start(n_, n_ - 1)),
       order_(start(n_, n_ - 1)),
       directory_(start(n_, steps_)) {
-    tbb::parallel_for(0, n_, [&](int i) {
+    parallel_for(n_, [&](int i) {
         double* out = matrix_.data() + start(i, n_);
         for (std::size_t j = 0; j < positions.size(); ++j)
             out[j] = distance(positions[static_cast<std::size_t>(i)], positions[j]);

@@ -1,6 +1,5 @@
 #include "symmetries/consistency.hpp"
 
-#include <tbb/parallel_for.h>
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -8,6 +7,7 @@
 
 #include "cycles/tolerance_interval.hpp"
 #include "isometry/fit.hpp"
+#include "parallel_for.hpp"
 
 namespace insym {
 namespace {
@@ -225,7 +225,7 @@ std::vector<Consistency> consistent_cycles(const Scene& scene, const std::vector
     const PartnerSearch search(scene, members, type);
     std::vector<std::vector<Consistency>> found(members.size());
     monitor.begin_stage("consistency", members.size());
-    tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t first) {
+    parallel_for(members.size(), [&](std::size_t first) {
         if (!monitor.should_stop()) search.partners_of(static_cast<int>(first), found[first]);
         monitor.advance();
     });

@@ -1,6 +1,5 @@
 #include "symmetries/pairs.hpp"
 
-#include <tbb/parallel_for.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include "isometry/fit.hpp"
 #include "points/point_grid.hpp"
 #include "symmetries/clusters.hpp"
+#include "parallel_for.hpp"
 
 namespace insym {
 namespace {
@@ -437,7 +437,7 @@ std::vector<PairCluster> detect_pairs(const Scene& scene, TypeSet types, RunMoni
     const PointGrid grid(scene.points.positions);
     std::vector<Findings> findings(static_cast<std::size_t>(n));
     monitor.begin_stage("pairs", static_cast<std::size_t>(n));
-    tbb::parallel_for(0, n, [&](int i) {
+    parallel_for(n, [&](int i) {
         PairSearch search(scene, grid, types, i, findings[static_cast<std::size_t>(i)]);
         for (int j = i + 1; j < n && !monitor.should_stop(); ++j)
             if (scene.label(i) == scene.label(j)) search.search(j);
