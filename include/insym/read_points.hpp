@@ -21,10 +21,14 @@ struct ReadPointsOptions {
 /// Parses "x,y,label" and the like; `skip` leaves a column out. Throws Error(invalid_option).
 INSYM_EXPORT std::vector<Column> parse_columns(const std::string& text);
 
-/// Reads points from text: columns parted by blanks, tabs, commas or semicolons; lines that start
-/// with # or // and blank lines are passed over; one header line of names is accepted in .csv. The
-/// chemists' .xyz (a count, a comment, then `symbol x y z`) is recognised by its first line, and
-/// element symbols become labels.
+/// Reads points from text: columns parted by blanks, tabs, commas or semicolons; what follows # or //
+/// and blank lines are passed over; one header line of names is accepted in .csv, and is an error if
+/// it names x, y or z elsewhere than they are read. Decimal commas and empty values are errors.
+///
+/// The chemists' .xyz (a count, a comment, then `symbol x y z`, further columns passed over) is
+/// recognised by its first line, a lone count. Labels are atomic numbers; symbols that are no
+/// elements get -1, -2, ... in alphabetical order. Of several frames the first is read, with a
+/// diagnostic (frames_skipped).
 ///
 /// `name` is used in messages and, by its ending, as the format. Coordinates are kept as read.
 /// Throws Error: cannot_read (no such file, a directory, binary data), invalid_input (no points, a

@@ -61,31 +61,28 @@ TwoPairFit residuals(const Vector3d& u, const Vector3d& v, const Vector3d& w, co
     return fit;
 }
 
-Matrix3d pair_axes(const Matrix3d& k, int dimension, bool exactly) {
-    Matrix3d axes = Matrix3d::Identity();
+/// Eigenvectors of K, least eigenvalue first.
+Matrix3d pair_axes(const Matrix3d& k, int dimension) {
     if (dimension == 2) {
         const Eigen::Matrix2d block = k.topLeftCorner<2, 2>();
+        Matrix3d axes = Matrix3d::Identity();
         axes.topLeftCorner<2, 2>() = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(block).eigenvectors();
         return axes;
     }
     Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
-    if (exactly)
-        solver.compute(k);
-    else
-        solver.computeDirect(k);
+    solver.computeDirect(k);
+    // The direct solution is quick, but cannot tell eigenvectors apart whose eigenvalues are nearly equal, as where
+    // the middles of the two pairs nearly meet.
+    constexpr double kApart = 1e-4;
+    const Vector3d& values = solver.eigenvalues();
+    const double size = std::max(std::abs(values[0]), std::abs(values[2]));
+    if (std::min(values[1] - values[0], values[2] - values[1]) < kApart * size) solver.compute(k);
     return solver.eigenvectors();
 }
 
 TwoPairFit fit_two_pairs(const Scene& scene, const Vector3d& u, const Vector3d& v, const Vector3d& w) {
     const Matrix3d k = u * u.transpose() + v * v.transpose() - w * w.transpose() / 2;
-    const int dimension = scene.dimension();
-    const TwoPairFit fit = residuals(u, v, w, pair_axes(k, dimension, false), dimension);
-    // The direct solution is quick and good to half the digits; a close call deserves the exact one.
-    const double limit = fit.limit(scene);
-    const double doubt = 1e-3 * limit + 1e-7 * scene.diameter;
-    const bool close = std::abs(fit.mirror - limit) <= doubt || std::abs(fit.inversion - limit) <= doubt ||
-                       std::abs(fit.half_turn - limit) <= doubt;
-    return close ? residuals(u, v, w, pair_axes(k, dimension, true), dimension) : fit;
+    return residuals(u, v, w, pair_axes(k, scene.dimension()), scene.dimension());
 }
 
 /// An edge of the graph of pairs, for M and for I (in 2D the half-turn).
@@ -265,9 +262,8 @@ void PairSearch::group_at(double level) {
     for (std::size_t k = 0; k < usable_.size(); ++k) {
         if (explained[k] != 0) continue;
         const Vector3d &v = usable_[k]->half, &w = usable_[k]->off;
-        Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
-        solver.computeDirect(u * u.transpose() + v * v.transpose() - w * w.transpose() / 2);
-        const Vector3d axis = solver.eigenvectors().col(0);
+        const Matrix3d matrix = u * u.transpose() + v * v.transpose() - w * w.transpose() / 2;
+        const Vector3d axis = pair_axes(matrix, 3).col(0);
 
         group_ = {usable_[k]};
         explained[k] = 1;
