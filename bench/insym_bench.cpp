@@ -3,6 +3,9 @@
 //   insym_bench --benchmark_filter=cycles --benchmark_repetitions=5
 //
 // Inputs: connectors of growing size made here, and the models of ../shared where it exists.
+#include "insym/detect.hpp"
+#include "insym/read_points.hpp"
+
 #include "cycles/detect_cycles.hpp"
 #include "points/diameter.hpp"
 #include "points/distances.hpp"
@@ -11,20 +14,17 @@
 #include "run_monitor.hpp"
 #include "scene.hpp"
 #include "symmetries/detect_symmetries.hpp"
-
-#include "insym/detect.hpp"
-#include "insym/read_points.hpp"
 #ifdef INSYM_WITH_BREP
 #include "insym/read_model.hpp"
 #endif
-
-#include <benchmark/benchmark.h>
-#include <tbb/task_arena.h>
 
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <benchmark/benchmark.h>
+#include <tbb/task_arena.h>
 
 namespace insym {
 namespace {
@@ -44,10 +44,7 @@ PointSet merged(const PointSet& points) {
 class Stages {
 public:
     explicit Stages(const BenchCase& bench)
-        : points_(bench.points),
-          distances_(points_.positions),
-          scene_(scene(bench)),
-          monitor_(context_) {}
+        : points_(bench.points), distances_(points_.positions), scene_(scene(bench)), monitor_(context_) {}
 
     CycleSearchResult cycles() { return detect_cycles(scene_, monitor_); }
     std::vector<Symmetry> symmetries(const std::vector<Cycle>& cycles) {
@@ -145,7 +142,8 @@ std::vector<BenchCase> bench_cases() {
     for (const char* name : {"as1-oc-214.stp", "dsub37.step", "Ventilator.stp"})
         if (std::filesystem::exists(data / name)) {
             const PointSet points = merged(read_model_file((data / name).string()).points);
-            cases.push_back({std::filesystem::path(name).stem().string() + std::to_string(points.size()), points, 1e-4});
+            cases.push_back(
+                {std::filesystem::path(name).stem().string() + std::to_string(points.size()), points, 1e-4});
         }
 #endif
     return cases;

@@ -1,12 +1,13 @@
 #include "insym/detect.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
+#include <tbb/task_arena.h>
+
 #include "cycles/detect_cycles.hpp"
+#include "parallel_for.hpp"
 #include "points/diameter.hpp"
 #include "points/merge.hpp"
 #include "ranking/measure.hpp"
@@ -14,7 +15,6 @@
 #include "run_monitor.hpp"
 #include "scene.hpp"
 #include "symmetries/detect_symmetries.hpp"
-#include "parallel_for.hpp"
 
 namespace insym {
 namespace {
@@ -98,8 +98,10 @@ void run(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, 
     result.timing.symmetries_s = seconds_since(after_cycles);
 
     if (found.frustrated > 0)
-        result.diagnostics.push_back({"no_common_direction", std::to_string(found.frustrated) +
-                                                                 " sets of consistent cycles have no common direction and were left out"});
+        result.diagnostics.push_back(
+            {"no_common_direction",
+             std::to_string(found.frustrated) +
+                 " sets of consistent cycles have no common direction and were left out"});
     result.stats = {search.seeds, result.cycles.size(), result.symmetries.size()};
 }
 
@@ -121,10 +123,13 @@ DetectResult detect(const PointSet& points, const DetectOptions& options, const 
     result.points = merge_equal_points(points, result.resolution);
     result.merged_points = static_cast<int>(points.size() - result.points.size());
     if (result.merged_points > 0)
-        result.diagnostics.push_back({"merged_points", std::to_string(result.merged_points) +
-                                                           " points lay closer than the resolution to another and were merged with it"});
+        result.diagnostics.push_back(
+            {"merged_points",
+             std::to_string(result.merged_points) +
+                 " points lay closer than the resolution to another and were merged with it"});
     const double share = options.max_tolerance ? *options.max_tolerance
-                                               : automatic_tolerance(static_cast<int>(result.points.size()), options.resolution);
+                                               : automatic_tolerance(static_cast<int>(result.points.size()),
+                                                                     options.resolution);
     result.max_tolerance = share * result.diameter;
 
     RunMonitor monitor(context);

@@ -1,14 +1,14 @@
 // What the stages ask while they run: may I go on? And what they tell: how far am I?
 #pragma once
 
+#include "insym/detect.hpp"
+#include "insym/run_context.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
 #include <string_view>
-
-#include "insym/detect.hpp"
-#include "insym/run_context.hpp"
 
 namespace insym {
 
@@ -63,7 +63,8 @@ private:
         if (!context_.on_progress || now - last_report_ < context_.progress_interval) return;
         last_report_ = now;
         reported_ = std::max(reported_, done);
-        context_.on_progress({stage_, static_cast<double>(reported_) / static_cast<double>(std::max<std::size_t>(work_, 1))});
+        context_.on_progress(
+            {stage_, static_cast<double>(reported_) / static_cast<double>(std::max<std::size_t>(work_, 1))});
     }
 
     const RunContext& context_;

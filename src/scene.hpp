@@ -2,6 +2,7 @@
 #pragma once
 
 #include "insym/detect.hpp"
+
 #include "points/distances.hpp"
 
 namespace insym {

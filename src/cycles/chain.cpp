@@ -20,7 +20,8 @@ void Chain::assign(std::span<const int> points) {
     std::copy(points.begin(), points.end(), buffer_.begin() + kRoom);
     orbits_.assign(points.size() - 1, Span{});
     for (std::size_t j = 1; j < points.size(); ++j)
-        for (std::size_t i = 0; i < j; ++i) orbits_[j - i - 1].include(scene_->distances(points[i], points[j]));
+        for (std::size_t i = 0; i < j; ++i)
+            orbits_[j - i - 1].include(scene_->distances(points[i], points[j]));
 }
 
 void Chain::add(int point, End end) {
@@ -86,11 +87,11 @@ bool ChainOracle::holds(std::span<const int> points, bool closed) {
 
 // --- candidates ----------------------------------------------------------------------------------
 
-/// Calls visit(q, E_min of the chain with q at `end`) for the points q that keep all orbits within `limit`, which
-/// visit may lower. `among`: as in best_candidate().
+/// Calls visit(q, E_min of the chain with q at `end`) for the points q that keep all orbits within `limit`,
+/// which visit may lower. `among`: as in best_candidate().
 template <class Visit>
-void ChainOracle::visit_extensions(const Chain& chain, End end, const std::vector<Candidate>* among, double& limit,
-                                   Visit visit) {
+void ChainOracle::visit_extensions(const Chain& chain, End end, const std::vector<Candidate>* among,
+                                   double& limit, Visit visit) {
     const auto orbits = chain.orbits();
     const auto points = chain.points();
     const std::size_t c = points.size();
@@ -107,7 +108,8 @@ void ChainOracle::visit_extensions(const Chain& chain, End end, const std::vecto
     by_length_.resize(c - 1);
     for (std::size_t k = 0; k + 1 < c; ++k) {
         std::size_t at = k;
-        for (; at > 0 && orbits[k].low < orbits[by_length_[at - 1]].low; --at) by_length_[at] = by_length_[at - 1];
+        for (; at > 0 && orbits[k].low < orbits[by_length_[at - 1]].low; --at)
+            by_length_[at] = by_length_[at - 1];
         by_length_[at] = k;
     }
     spans_.resize(c);
@@ -145,11 +147,14 @@ void ChainOracle::visit_extensions(const Chain& chain, End end, const std::vecto
 void ChainOracle::candidates(const Chain& chain, End end, std::vector<Candidate>& out) {
     out.clear();
     double limit = scene_.max_tolerance;
-    visit_extensions(chain, end, nullptr, limit, [&](int q, double tolerance) { out.push_back({tolerance, q}); });
+    visit_extensions(chain, end, nullptr, limit, [&](int q, double tolerance) {
+        out.push_back({tolerance, q});
+    });
     std::sort(out.begin(), out.end());
 }
 
-Candidate ChainOracle::best_candidate(const Chain& chain, End end, double limit, const std::vector<Candidate>* among) {
+Candidate ChainOracle::best_candidate(const Chain& chain, End end, double limit,
+                                      const std::vector<Candidate>* among) {
     Candidate best{kInfinity, -1};
     visit_extensions(chain, end, among, limit, [&](int q, double tolerance) {
         best = std::min(best, Candidate{tolerance, q});
@@ -235,8 +240,8 @@ void ChainOracle::leave_out(std::span<const int> points, bool closed, std::size_
     if (c > kShortSequence) {
         for (std::size_t r = 1; r <= rest_.size(); ++r) {
             const int before = static_cast<int>(at) - static_cast<int>(r);
-            rest_[r - 1] = extremes_[r - 1].without(static_cast<int>(at),
-                                                    closed && before < 0 ? before + static_cast<int>(c) : before);
+            rest_[r - 1] = extremes_[r - 1].without(
+                static_cast<int>(at), closed && before < 0 ? before + static_cast<int>(c) : before);
         }
         return;
     }

@@ -50,7 +50,8 @@ struct Candidate {
 /// each thread.
 class ChainOracle {
 public:
-    explicit ChainOracle(const Scene& scene) : scene_(scene), twin_(static_cast<std::size_t>(scene.size()), -1) {}
+    explicit ChainOracle(const Scene& scene)
+        : scene_(scene), twin_(static_cast<std::size_t>(scene.size()), -1) {}
 
     const Scene& scene() const { return scene_; }
 
@@ -65,9 +66,10 @@ public:
 
     /// Every point that extends `end` with C1 true, least E_min first, ties by index.
     void candidates(const Chain& chain, End end, std::vector<Candidate>& out);
-    /// The first of them, or tolerance = infinity and point = -1 if none is within `limit`. `among`: a list known
-    /// to hold all of them, such as the candidates of a part of the chain at the same end.
-    Candidate best_candidate(const Chain& chain, End end, double limit, const std::vector<Candidate>* among = nullptr);
+    /// The first of them, or tolerance = infinity and point = -1 if none is within `limit`. `among`: a list
+    /// known to hold all of them, such as the candidates of a part of the chain at the same end.
+    Candidate best_candidate(const Chain& chain, End end, double limit,
+                             const std::vector<Candidate>* among = nullptr);
 
 private:
     struct Extremes;
@@ -80,7 +82,8 @@ private:
         scene_.distances.visit_shell(point, low - slack, high + slack, visit);
     }
     template <class Visit>
-    void visit_extensions(const Chain& chain, End end, const std::vector<Candidate>* among, double& limit, Visit visit);
+    void visit_extensions(const Chain& chain, End end, const std::vector<Candidate>* among, double& limit,
+                          Visit visit);
     void collect_extremes(std::span<const int> points, bool closed);
     void collect_distances(std::span<const int> points);
     void leave_out(std::span<const int> points, bool closed, std::size_t at);
@@ -101,8 +104,8 @@ private:
     std::vector<Span> spans_;
     std::vector<Span> rest_;  // the orbits without the distances of one point
     std::vector<Extremes> extremes_;
-    std::vector<int> twin_;  // for each point: what could replace it the last time, or -1
-    int replaced_ = -1;      // the point that could be replaced the last time
+    std::vector<int> twin_;      // for each point: what could replace it the last time, or -1
+    int replaced_ = -1;          // the point that could be replaced the last time
     std::vector<double> table_;  // the distances within a short sequence, row by row
 };
 

@@ -8,9 +8,9 @@
 
 namespace insym {
 
-/// A hash map from sequences of ints, each the same as its reverse, to what is known of them. Entries are never
-/// removed; the sequences lie one after another in one block, so a million short chains cost a few tens of
-/// bytes each.
+/// A hash map from sequences of ints, each the same as its reverse, to what is known of them. Entries are
+/// never removed; the sequences lie one after another in one block, so a million short chains cost a few tens
+/// of bytes each.
 class ChainMemo {
 public:
     enum class Answer : std::uint8_t { unknown, no, yes };
@@ -27,13 +27,15 @@ public:
     Id id(std::span<const int> chain) {
         if (2 * (entries_.size() + 1) > slots_.size()) grow();
         const bool forward = chain.front() <= chain.back();
-        const std::uint64_t hash = forward ? hash_of(chain.begin(), chain.end()) : hash_of(chain.rbegin(), chain.rend());
+        const std::uint64_t hash =
+            forward ? hash_of(chain.begin(), chain.end()) : hash_of(chain.rbegin(), chain.rend());
         std::size_t s = hash & (slots_.size() - 1);
         for (; slots_[s].length > 0; s = (s + 1) & (slots_.size() - 1)) {
             const Slot& slot = slots_[s];
             if (slot.hash != hash || slot.length != chain.size()) continue;
             const auto key = keys_.begin() + static_cast<std::ptrdiff_t>(slot.key);
-            if (forward ? std::equal(chain.begin(), chain.end(), key) : std::equal(chain.rbegin(), chain.rend(), key))
+            if (forward ? std::equal(chain.begin(), chain.end(), key)
+                        : std::equal(chain.rbegin(), chain.rend(), key))
                 return slot.entry;
         }
         slots_[s] = {hash, keys_.size(), entries_.size(), static_cast<std::uint32_t>(chain.size())};

@@ -1,8 +1,8 @@
 #include "cycles/detect_cycles.hpp"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
+
+#include <tbb/enumerable_thread_specific.h>
 
 #include "cycles/chain.hpp"
 #include "cycles/chain_memo.hpp"
@@ -35,7 +35,12 @@ CanonicalCycle canonical(std::span<const int> sequence, bool closed) {
 class Expansion {
 public:
     Expansion(const Scene& scene, RunMonitor& monitor)
-        : scene_(scene), monitor_(monitor), oracle_(scene), type_oracle_(scene), chain_(scene), extended_(scene) {}
+        : scene_(scene),
+          monitor_(monitor),
+          oracle_(scene),
+          type_oracle_(scene),
+          chain_(scene),
+          extended_(scene) {}
 
     void expand_apex(int apex);
 
@@ -53,7 +58,8 @@ private:
     static constexpr int kRight = 1;
 
     bool expand_chain(std::span<const int> four);
-    bool expand_side(std::span<const int> four, const std::vector<Candidate>& fifths, const std::vector<Candidate>& far);
+    bool expand_side(std::span<const int> four, const std::vector<Candidate>& fifths,
+                     const std::vector<Candidate>& far);
     bool follow(std::span<const int> start, Ends ends);
     bool follow_path(Ends ends);
     std::pair<Candidate, Candidate> best_ends(double limit, Ends ends);
@@ -240,14 +246,15 @@ bool Expansion::follow_path(Ends ends) {
     return found;
 }
 
-/// The best candidates at the right and at the left end within `limit`. The end that is quickly asked goes first: what
-/// it offers limits the other.
+/// The best candidates at the right and at the left end within `limit`. The end that is quickly asked goes
+/// first: what it offers limits the other.
 std::pair<Candidate, Candidate> Expansion::best_ends(double limit, Ends ends) {
     const bool left_first = ends.left != nullptr;
     const End first = left_first ? End::left : End::right;
     const Candidate one = oracle_.best_candidate(chain_, first, limit, left_first ? ends.left : ends.right);
-    const Candidate other = oracle_.best_candidate(chain_, left_first ? End::right : End::left,
-                                                   std::min(limit, one.tolerance), left_first ? ends.right : ends.left);
+    const Candidate other =
+        oracle_.best_candidate(chain_, left_first ? End::right : End::left, std::min(limit, one.tolerance),
+                               left_first ? ends.right : ends.left);
     return left_first ? std::pair(other, one) : std::pair(one, other);
 }
 
@@ -304,7 +311,8 @@ bool Expansion::resolve_closed(std::span<const int> ring) {
 /// Adds the cycle if it has a type.
 bool Expansion::keep(std::span<const int> sequence, bool closed) {
     CanonicalCycle cycle = canonical(sequence, closed);
-    const TypeSet types = type_oracle_.types(cycle.points, closed, oracle_.interval(cycle.points, closed).min);
+    const TypeSet types =
+        type_oracle_.types(cycle.points, closed, oracle_.interval(cycle.points, closed).min);
     if (types.empty()) return false;
     found_.emplace_back(std::move(cycle), types);
     return true;
@@ -348,7 +356,8 @@ CycleSearchResult detect_cycles(const Scene& scene, RunMonitor& monitor) {
         std::move(expansion.found().begin(), expansion.found().end(), std::back_inserter(found));
     }
     std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    found.erase(std::unique(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
+    found.erase(std::unique(found.begin(), found.end(),
+                            [](const auto& a, const auto& b) { return a.first == b.first; }),
                 found.end());
 
     ChainOracle oracle(scene);

@@ -1,10 +1,10 @@
 // The tolerances at which distance orbits are told apart (definitions, section 3).
 #pragma once
 
+#include "insym/detect.hpp"
+
 #include <limits>
 #include <span>
-
-#include "insym/detect.hpp"
 
 namespace insym {
 

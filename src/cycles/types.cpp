@@ -45,7 +45,9 @@ double at(const Line& line, std::size_t k, std::size_t count) {
     return line.middle + line.slope * (static_cast<double>(k) - static_cast<double>(count - 1) / 2);
 }
 
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Vector2d& a, const Vector2d& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
 
 }  // namespace
 
@@ -163,9 +165,11 @@ bool TypeOracle::near_circle(bool closed) {
         if (i > 0) angle[i] = angle[i - 1] + std::remainder(angle[i] - angle[i - 1], 2 * std::numbers::pi);
     }
     const Line line = fit_line(c, [&](std::size_t k) { return angle[k]; });
-    const double step = closed ? std::copysign(2 * std::numbers::pi / static_cast<double>(c), first_turn_) : line.slope;
+    const double step =
+        closed ? std::copysign(2 * std::numbers::pi / static_cast<double>(c), first_turn_) : line.slope;
     // One turn at most: a star is not a ring of its own.
-    if (std::abs(step) * static_cast<double>(closed ? c : c - 1) > 2 * std::numbers::pi * (1 + 1e-6)) return false;
+    if (std::abs(step) * static_cast<double>(closed ? c : c - 1) > 2 * std::numbers::pi * (1 + 1e-6))
+        return false;
 
     for (std::size_t i = 1; i < c; ++i)
         for (std::size_t j = 0; j < i; ++j) {
@@ -179,7 +183,8 @@ bool TypeOracle::near_zigzag() {
     const std::size_t c = flat_.size();
     // The direction of the row: the principal axis of the middles of the links.
     Vector2d mean = Vector2d::Zero();
-    for (std::size_t i = 0; i + 1 < c; ++i) mean += (flat_[i] + flat_[i + 1]) / 2 / static_cast<double>(c - 1);
+    for (std::size_t i = 0; i + 1 < c; ++i)
+        mean += (flat_[i] + flat_[i + 1]) / 2 / static_cast<double>(c - 1);
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
     for (std::size_t i = 0; i + 1 < c; ++i) {
         const Vector2d p = (flat_[i] + flat_[i + 1]) / 2 - mean;

@@ -32,8 +32,8 @@ private:
 
     const Scene& scene_;
     double eps_ = 0;
-    Points x_;      // the cycle's points, relative to their mean
-    Points ideal_;  // the candidate's points
+    Points x_;                  // the cycle's points, relative to their mean
+    Points ideal_;              // the candidate's points
     std::vector<double> dist_;  // of x_, row by row
     // In the best plane through the points:
     Eigen::Matrix<double, 3, 2> plane_;

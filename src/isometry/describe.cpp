@@ -17,7 +17,8 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// The angle of a proper linear map, 0..180; exact near both ends.
 double angle_deg_of(const Matrix3d& proper) {
-    const Vector3d twice_sine(proper(2, 1) - proper(1, 2), proper(0, 2) - proper(2, 0), proper(1, 0) - proper(0, 1));
+    const Vector3d twice_sine(proper(2, 1) - proper(1, 2), proper(0, 2) - proper(2, 0),
+                              proper(1, 0) - proper(0, 1));
     return std::atan2(twice_sine.norm(), proper.trace() - 1) * kDegrees;
 }
 
@@ -97,8 +98,9 @@ Isometry describe(SymmetryType type, const RigidMap& map, const Vector3d& near, 
                 out.center = to_point(fixed_point(map.linear, map.shift, near));
                 break;
             }
-            const Vector3d axis = type == SymmetryType::half_turn ? with_fixed_sign(eigenvector(map.linear, 1))
-                                                                  : rotation_axis(map.linear);
+            const Vector3d axis = type == SymmetryType::half_turn
+                                      ? with_fixed_sign(eigenvector(map.linear, 1))
+                                      : rotation_axis(map.linear);
             const double step = axis.dot(map.shift);
             out.step = type == SymmetryType::screw ? std::abs(step) : 0;
             out.axis = Axis{to_point(fixed_point(map.linear, map.shift - step * axis, near)), to_point(axis)};

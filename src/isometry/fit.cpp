@@ -26,9 +26,13 @@ LinkSums& LinkSums::operator+=(const LinkSums& other) {
     return *this;
 }
 
-LinkSums LinkSums::reversed() const { return {count, to, from, outer.transpose()}; }
+LinkSums LinkSums::reversed() const {
+    return {count, to, from, outer.transpose()};
+}
 
-Matrix3d LinkSums::covariance() const { return outer - from * to.transpose() / count; }
+Matrix3d LinkSums::covariance() const {
+    return outer - from * to.transpose() / count;
+}
 
 RigidFits fit_rigid(const LinkSums& sums, int dimension) {
     Matrix3d h = sums.covariance();
@@ -102,7 +106,9 @@ Matrix3d eigenvectors(const Matrix3d& symmetric, int dimension) {
     return vectors;
 }
 
-RigidMap fit_translation(const Centred& centred) { return {Matrix3d::Identity(), centred.to - centred.from}; }
+RigidMap fit_translation(const Centred& centred) {
+    return {Matrix3d::Identity(), centred.to - centred.from};
+}
 
 /// Minimise 4 sum (n.a)(n.b) over unit n; the shift along the plane is free.
 RigidMap fit_glide(const Centred& centred, int dimension) {
@@ -121,7 +127,8 @@ RigidMap fit_pairs(SymmetryType type, const std::vector<Link>& links, int dimens
 
     Matrix3d q = -Matrix3d::Identity();
     if (dimension == 2) q(2, 2) = 1;
-    const bool central = type == SymmetryType::inversion || (type == SymmetryType::half_turn && dimension == 2);
+    const bool central =
+        type == SymmetryType::inversion || (type == SymmetryType::half_turn && dimension == 2);
     if (!central) {
         Matrix3d k = Matrix3d::Zero();
         for (const Link& l : links) {
@@ -216,10 +223,14 @@ RigidMap fit_of_type(SymmetryType type, const std::vector<Link>& links, int dime
     if (is_pair_type(type)) return fit_pairs(type, links, dimension);
     const Centred centred(links);
     switch (type) {
-        case SymmetryType::translation: return fit_translation(centred);
-        case SymmetryType::glide_reflection: return fit_glide(centred, dimension);
-        case SymmetryType::rotation: return fit_rotation(centred, dimension);
-        default: break;
+        case SymmetryType::translation:
+            return fit_translation(centred);
+        case SymmetryType::glide_reflection:
+            return fit_glide(centred, dimension);
+        case SymmetryType::rotation:
+            return fit_rotation(centred, dimension);
+        default:
+            break;
     }
     const RigidFits fits = fit_rigid(centred.sums(), dimension);
     RigidMap map = type == SymmetryType::rotation_reflection ? fits.improper : fits.proper;

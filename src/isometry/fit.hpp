@@ -1,11 +1,11 @@
 // Least-squares isometries over links P -> sigma(P), free and of each kind (definitions, section 7).
 #pragma once
 
-#include <Eigen/Core>
-#include <vector>
-
 #include "insym/isometry.hpp"
 #include "insym/symmetry_type.hpp"
+
+#include <Eigen/Core>
+#include <vector>
 
 namespace insym {
 
@@ -56,7 +56,11 @@ RigidMap fit_of_type(SymmetryType type, const std::vector<Link>& links, int dime
 /// The axis of a proper linear map that is not the identity: unit, turning by 0..180 degrees.
 Eigen::Vector3d rotation_axis(const Eigen::Matrix3d& linear);
 
-inline Eigen::Vector3d to_vector(const Point& p) { return {p[0], p[1], p[2]}; }
-inline Point to_point(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+inline Eigen::Vector3d to_vector(const Point& p) {
+    return {p[0], p[1], p[2]};
+}
+inline Point to_point(const Eigen::Vector3d& v) {
+    return {v.x(), v.y(), v.z()};
+}
 
 }  // namespace insym

@@ -22,7 +22,8 @@ double diameter(const std::vector<Point>& positions) {
     std::vector<std::pair<double, const Point*>> by_radius;
     by_radius.reserve(positions.size());
     for (const Point& p : positions) by_radius.emplace_back(distance(p, centroid), &p);
-    std::sort(by_radius.begin(), by_radius.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::sort(by_radius.begin(), by_radius.end(),
+              [](const auto& a, const auto& b) { return a.first > b.first; });
 
     double best = 0;
     for (std::size_t i = 0; i < by_radius.size() && 2 * by_radius[i].first >= best; ++i)

@@ -1,9 +1,9 @@
 // The longest distance in a point set (definitions, section 1).
 #pragma once
 
-#include <vector>
-
 #include "insym/point_set.hpp"
+
+#include <vector>
 
 namespace insym {
 

@@ -1,11 +1,10 @@
 #include "points/distances.hpp"
 
-
 #include <algorithm>
 #include <numeric>
 
-#include "points/diameter.hpp"
 #include "parallel_for.hpp"
+#include "points/diameter.hpp"
 
 namespace insym {
 

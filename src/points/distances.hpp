@@ -1,11 +1,11 @@
 // All distances of a point set, and for each point the others in order of distance.
 #pragma once
 
+#include "insym/point_set.hpp"
+
 #include <cstddef>
 #include <span>
 #include <vector>
-
-#include "insym/point_set.hpp"
 
 namespace insym {
 
@@ -18,14 +18,16 @@ public:
     double operator()(int i, int j) const { return row(i)[static_cast<std::size_t>(j)]; }
 
     /// The distances of point i to all points, by index.
-    std::span<const double> row(int i) const { return {matrix_.data() + start(i, n_), static_cast<std::size_t>(n_)}; }
+    std::span<const double> row(int i) const {
+        return {matrix_.data() + start(i, n_), static_cast<std::size_t>(n_)};
+    }
     /// All points but i itself, nearest first, equal distances by index.
     std::span<const int> nearest_first(int i) const {
         return {order_.data() + start(i, n_ - 1), static_cast<std::size_t>(n_ - 1)};
     }
 
-    /// Calls visit(point, distance) for every other point whose distance to i is in [low, high], nearest first,
-    /// until it returns false. O(1) to find the first.
+    /// Calls visit(point, distance) for every other point whose distance to i is in [low, high], nearest
+    /// first, until it returns false. O(1) to find the first.
     template <class Visit>
     void visit_shell(int i, double low, double high, Visit visit) const {
         const double* d = sorted_.data() + start(i, n_ - 1);
@@ -39,7 +41,9 @@ public:
     }
 
 private:
-    static std::size_t start(int i, int width) { return static_cast<std::size_t>(i) * static_cast<std::size_t>(width); }
+    static std::size_t start(int i, int width) {
+        return static_cast<std::size_t>(i) * static_cast<std::size_t>(width);
+    }
 
     int n_ = 0;
     int steps_ = 0;  // of distance, whose first points are known: about one for each point

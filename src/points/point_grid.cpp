@@ -30,7 +30,8 @@ PointGrid::PointGrid(const std::vector<Point>& positions, double cell) {
     if (!(size > 0)) size = 1;
     while (cells(size) > 2 * n + 8) size *= 1.25;
     inverse_cell_ = 1 / size;
-    for (std::size_t k = 0; k < 3; ++k) count_[k] = static_cast<std::int64_t>(std::floor(extent[k] / size)) + 1;
+    for (std::size_t k = 0; k < 3; ++k)
+        count_[k] = static_cast<std::int64_t>(std::floor(extent[k] / size)) + 1;
 
     std::vector<std::int64_t> home(positions.size());
     start_.assign(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]) + 1, 0);

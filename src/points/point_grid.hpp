@@ -1,11 +1,11 @@
 // A uniform grid over a fixed set of points: "which points lie within r of here?"
 #pragma once
 
+#include "insym/point_set.hpp"
+
 #include <cmath>
 #include <cstdint>
 #include <vector>
-
-#include "insym/point_set.hpp"
 
 namespace insym {
 

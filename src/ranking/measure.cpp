@@ -91,7 +91,8 @@ std::optional<int> Measure::order_of(const Symmetry& symmetry) const {
     const double order = std::round(360 / angle);
     if (order < 2 || order > 1e6) return std::nullopt;
 
-    const Point axis_point = symmetry.isometry.axis ? symmetry.isometry.axis->point : *symmetry.isometry.center;
+    const Point axis_point =
+        symmetry.isometry.axis ? symmetry.isometry.axis->point : *symmetry.isometry.center;
     const Eigen::Vector3d direction =
         symmetry.isometry.axis ? to_vector(symmetry.isometry.axis->direction) : Eigen::Vector3d::UnitZ();
     double radius = 0;

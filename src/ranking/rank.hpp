@@ -1,9 +1,9 @@
 // The order of the list: intent before chance.
 #pragma once
 
-#include <vector>
-
 #include "insym/detect.hpp"
+
+#include <vector>
 
 namespace insym {
 

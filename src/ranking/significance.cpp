@@ -9,14 +9,21 @@ namespace insym {
 int degrees_of_freedom(SymmetryType type, int dimension) {
     const bool plane = dimension == 2;
     switch (type) {
-        case SymmetryType::mirror: return plane ? 2 : 3;
-        case SymmetryType::inversion: return 3;
-        case SymmetryType::half_turn: return plane ? 2 : 4;
-        case SymmetryType::translation: return plane ? 2 : 3;
-        case SymmetryType::rotation: return plane ? 3 : 5;
-        case SymmetryType::glide_reflection: return plane ? 3 : 5;
+        case SymmetryType::mirror:
+            return plane ? 2 : 3;
+        case SymmetryType::inversion:
+            return 3;
+        case SymmetryType::half_turn:
+            return plane ? 2 : 4;
+        case SymmetryType::translation:
+            return plane ? 2 : 3;
+        case SymmetryType::rotation:
+            return plane ? 3 : 5;
+        case SymmetryType::glide_reflection:
+            return plane ? 3 : 5;
         case SymmetryType::rotation_reflection:
-        case SymmetryType::screw: return 6;
+        case SymmetryType::screw:
+            return 6;
     }
     return 6;
 }
@@ -48,8 +55,8 @@ double Significance::log10_false_alarms(SymmetryType type, int links, double rea
     constexpr double kKinds = 8;
     constexpr double kTolerances = 16;  // decades and more between the resolution and the diameter
     const double r = std::max(reach, resolution_);
-    const double log_ball =
-        dimension_ == 3 ? std::log(4 * std::numbers::pi / 3) + 3 * std::log(r) : std::log(std::numbers::pi) + 2 * std::log(r);
+    const double log_ball = dimension_ == 3 ? std::log(4 * std::numbers::pi / 3) + 3 * std::log(r)
+                                            : std::log(std::numbers::pi) + 2 * std::log(r);
     // The chance that a scattered set has a point within r of a given place.
     const double log_p = std::min(0.0, std::log(static_cast<double>(n_)) + log_ball - log_volume_);
 

@@ -2,9 +2,9 @@
 // Morel 2000). The model and its assumptions stand in docs/significance.md.
 #pragma once
 
-#include <vector>
-
 #include "insym/detect.hpp"
+
+#include <vector>
 
 namespace insym {
 
@@ -23,7 +23,7 @@ private:
     int n_ = 0;
     int dimension_ = 3;
     double resolution_ = 0;
-    double log_volume_ = 0;                ///< of the bounding box, natural logarithm
+    double log_volume_ = 0;  ///< of the bounding box, natural logarithm
     std::vector<double> log_factorial_;
 };
 

@@ -23,10 +23,10 @@ public:
     struct Part {
         std::vector<int> members;
         std::size_t edges = 0;
-        double tolerance = 0;         // the largest of its edges
-        double top = 0;               // the least E_max
+        double tolerance = 0;  // the largest of its edges
+        double top = 0;        // the least E_max
         bool agrees = true;
-        std::vector<int> recorded;    // clusters of this component that no later one holds
+        std::vector<int> recorded;  // clusters of this component that no later one holds
         bool complete() const { return edges == members.size() * (members.size() - 1) / 2; }
     };
 
@@ -118,7 +118,8 @@ Clustering complete_components(std::size_t members, std::vector<Consistency> edg
             cluster.reversed.push_back(static_cast<char>(own ^ first));
             result.clustered[static_cast<std::size_t>(m)] = 1;
         }
-        for (const int inner : part.recorded) result.clusters[static_cast<std::size_t>(inner)].maximal = false;
+        for (const int inner : part.recorded)
+            result.clusters[static_cast<std::size_t>(inner)].maximal = false;
         part.recorded = {static_cast<int>(result.clusters.size())};
         result.clusters.push_back(std::move(cluster));
     };

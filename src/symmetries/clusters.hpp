@@ -16,9 +16,9 @@ struct Cluster {
 };
 
 struct Clustering {
-    std::vector<Cluster> clusters;   ///< of two members and more, by tolerance
-    std::vector<char> clustered;     ///< for each member: in one of them
-    int frustrated = 0;              ///< complete components whose directions do not agree, left out
+    std::vector<Cluster> clusters;  ///< of two members and more, by tolerance
+    std::vector<char> clustered;    ///< for each member: in one of them
+    int frustrated = 0;             ///< complete components whose directions do not agree, left out
 };
 
 /// Lets the edges enter in order of tolerance, those within `resolution` of the first of a group

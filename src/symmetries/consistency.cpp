@@ -1,6 +1,5 @@
 #include "symmetries/consistency.hpp"
 
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -20,9 +19,7 @@ struct Strand {
     bool reversed = false;
 
     int size() const { return static_cast<int>(cycle.points.size()); }
-    int point(int k) const {
-        return cycle.points[static_cast<std::size_t>(reversed ? size() - 1 - k : k)];
-    }
+    int point(int k) const { return cycle.points[static_cast<std::size_t>(reversed ? size() - 1 - k : k)]; }
     int links() const { return cycle.closed ? size() : size() - 1; }
     int next(int k) const { return k + 1 < size() ? k + 1 : 0; }
 };
@@ -91,7 +88,8 @@ public:
                 starts_.push_back({s.point(0), s.point(1), m, reversed});
             }
         std::sort(starts_.begin(), starts_.end(), [](const Start& a, const Start& b) {
-            return std::tie(a.from, a.to, a.member, a.reversed) < std::tie(b.from, b.to, b.member, b.reversed);
+            return std::tie(a.from, a.to, a.member, a.reversed) <
+                   std::tie(b.from, b.to, b.member, b.reversed);
         });
         for (std::size_t k = 0; k < starts_.size(); ++k)
             if (k == 0 || starts_[k].from != starts_[k - 1].from || starts_[k].to != starts_[k - 1].to)
@@ -145,7 +143,8 @@ public:
         std::vector<Consistency> passed;
         const auto carried = [&](int from, int to) { return carries_link(p, from, to, limit); };
         starts_.visit_carried(first, carried, [&](const StartLinks::Start& start) {
-            const double tolerance = union_tolerance(p, {*members_[static_cast<std::size_t>(start.member)], start.reversed});
+            const double tolerance =
+                union_tolerance(p, {*members_[static_cast<std::size_t>(start.member)], start.reversed});
             if (tolerance < kInfinity) passed.push_back({tolerance, first, start.member, start.reversed});
         });
         // The better of the two directions of each second cycle, the given one where they are equal.
@@ -168,7 +167,8 @@ private:
         for (int k = 0; k < p.links(); ++k) {
             const int here = p.point(k), there = p.point(p.next(k));
             if (here == from || there == to) return false;  // not disjoint
-            if (std::abs(d_from[static_cast<std::size_t>(here)] - d_to[static_cast<std::size_t>(there)]) > limit)
+            if (std::abs(d_from[static_cast<std::size_t>(here)] - d_to[static_cast<std::size_t>(there)]) >
+                limit)
                 return false;
         }
         return true;
@@ -203,7 +203,8 @@ private:
             double square = 0;
             for (const Link& l : p.links) square = std::max(square, (map(l.from) - l.to).squaredNorm());
             for (const Link& l : q.links)
-                square = std::max(square, (c.reversed ? map(l.to) - l.from : map(l.from) - l.to).squaredNorm());
+                square =
+                    std::max(square, (c.reversed ? map(l.to) - l.from : map(l.from) - l.to).squaredNorm());
             return std::sqrt(square);
         };
         const double proper = worst(fits.proper), improper = worst(fits.improper);

@@ -71,7 +71,8 @@ SymmetrySearchResult detect_symmetries(const Scene& scene, const std::vector<Cyc
     SymmetrySearchResult result;
     for (const SymmetryType type : kCycleTypes)
         if (types.contains(type)) add_of_type(scene, cycles, type, monitor, result);
-    for (const PairCluster& cluster : detect_pairs(scene, types, monitor)) result.symmetries.push_back(from_pairs(cluster));
+    for (const PairCluster& cluster : detect_pairs(scene, types, monitor))
+        result.symmetries.push_back(from_pairs(cluster));
     return result;
 }
 

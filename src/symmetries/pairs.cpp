@@ -1,15 +1,14 @@
 #include "symmetries/pairs.hpp"
 
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
 #include "isometry/fit.hpp"
+#include "parallel_for.hpp"
 #include "points/point_grid.hpp"
 #include "symmetries/clusters.hpp"
-#include "parallel_for.hpp"
 
 namespace insym {
 namespace {
@@ -44,10 +43,13 @@ struct TwoPairFit {
     }
 };
 
-/// Two pairs p +- u and q +- v, w = q - p. See fit_pairs() for K, whose eigenvectors `axes`, least first, give the axis
-/// of the best half-turn and the normal of the best mirror.
-TwoPairFit residuals(const Vector3d& u, const Vector3d& v, const Vector3d& w, const Matrix3d& axes, int dimension) {
-    const auto rejection = [](const Vector3d& x, const Vector3d& n) { return (x - n * n.dot(x)).squaredNorm(); };
+/// Two pairs p +- u and q +- v, w = q - p. See fit_pairs() for K, whose eigenvectors `axes`, least first,
+/// give the axis of the best half-turn and the normal of the best mirror.
+TwoPairFit residuals(const Vector3d& u, const Vector3d& v, const Vector3d& w, const Matrix3d& axes,
+                     int dimension) {
+    const auto rejection = [](const Vector3d& x, const Vector3d& n) {
+        return (x - n * n.dot(x)).squaredNorm();
+    };
     TwoPairFit fit;
     fit.inversion = w.norm();
     const Vector3d n = axes.col(dimension - 1);
@@ -71,8 +73,8 @@ Matrix3d pair_axes(const Matrix3d& k, int dimension) {
     }
     Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
     solver.computeDirect(k);
-    // The direct solution is quick, but cannot tell eigenvectors apart whose eigenvalues are nearly equal, as where
-    // the middles of the two pairs nearly meet.
+    // The direct solution is quick, but cannot tell eigenvectors apart whose eigenvalues are nearly equal, as
+    // where the middles of the two pairs nearly meet.
     constexpr double kApart = 1e-4;
     const Vector3d& values = solver.eigenvalues();
     const double size = std::max(std::abs(values[0]), std::abs(values[2]));
@@ -154,7 +156,12 @@ private:
 };
 
 PairSearch::PairSearch(const Scene& scene, const PointGrid& grid, TypeSet types, int first, Findings& out)
-    : scene_(scene), grid_(grid), types_(types), out_(out), pair_{first, first}, a_(scene.distances.row(first)) {
+    : scene_(scene),
+      grid_(grid),
+      types_(types),
+      out_(out),
+      pair_{first, first},
+      a_(scene.distances.row(first)) {
     for (const int q : scene.distances.nearest_first(first))
         if (q > first && scene.label(q) == scene.label(first)) later_.push_back(q);
     for (const int q : later_) later_a_.push_back(a_[index(q)]);
@@ -185,7 +192,8 @@ void PairSearch::search(int second) {
 
 void PairSearch::collect_matches() {
     const double cap = scene_.max_tolerance;
-    // Of q and its image one leans to the first point: q. Stored without a branch, which would be a coin toss.
+    // Of q and its image one leans to the first point: q. Stored without a branch, which would be a coin
+    // toss.
     std::size_t leaning = 0;
     for (std::size_t k = 0; k < later_.size(); ++k) {
         leaning_[leaning] = static_cast<int>(k);
@@ -196,14 +204,17 @@ void PairSearch::collect_matches() {
         const double a = a_[index(q)], b = b_[index(q)];
         if (q == pair_.second) continue;
         // The image is as far from the first point as q is from the second.
-        std::size_t k = static_cast<std::size_t>(directory_[static_cast<std::size_t>(std::max(0.0, b - cap) * directory_scale_)]);
+        std::size_t k = static_cast<std::size_t>(
+            directory_[static_cast<std::size_t>(std::max(0.0, b - cap) * directory_scale_)]);
         for (; k < later_.size() && later_a_[k] <= b + cap; ++k) {
             const int image = later_[k];
             const double other_b = b_[index(image)];
-            if (later_a_[k] < b - cap || std::abs(a - other_b) > cap || image == q || image == pair_.second) continue;
+            if (later_a_[k] < b - cap || std::abs(a - other_b) > cap || image == q || image == pair_.second)
+                continue;
             const double lean = a - b, other_lean = later_a_[k] - other_b;
             if (lean > other_lean || (lean == other_lean && q > image)) continue;
-            examine(q, image, std::max({scene_.resolution, std::abs(a - other_b), std::abs(b - later_a_[k])}));
+            examine(q, image,
+                    std::max({scene_.resolution, std::abs(a - other_b), std::abs(b - later_a_[k])}));
         }
     }
 }
@@ -217,8 +228,10 @@ void PairSearch::examine(int q, int image, double tolerance) {
     const Pair other = {std::min(q, image), std::max(q, image)};
     if (types_.contains(SymmetryType::mirror) && fit.mirror <= limit)
         out_.mirror_edges.push_back({tolerance, pair_, other});
-    if (types_.contains(central_type()) && fit.inversion <= limit) out_.central_edges.push_back({tolerance, pair_, other});
-    if (fit.half_turn <= limit && scene_.dimension() == 3) matches_.push_back({{q, image}, tolerance, w, v, w.norm()});
+    if (types_.contains(central_type()) && fit.inversion <= limit)
+        out_.central_edges.push_back({tolerance, pair_, other});
+    if (fit.half_turn <= limit && scene_.dimension() == 3)
+        matches_.push_back({{q, image}, tolerance, w, v, w.norm()});
 }
 
 /// The mirror of the pair alone moves q by |a^2 - b^2| / |P1 P2|.
@@ -269,14 +282,15 @@ void PairSearch::group_at(double level) {
         explained[k] = 1;
         for (std::size_t r = 0; r < usable_.size(); ++r) {
             const Match& match = *usable_[r];
-            // The half-turn moves the points of a pair off by twice its middle's way off the axis, and by twice the
-            // chord's share along it.
+            // The half-turn moves the points of a pair off by twice its middle's way off the axis, and by
+            // twice the chord's share along it.
             if (2 * std::abs(axis.dot(match.half)) > level) continue;
             const Vector3d off = match.off - w / 2;
             const double along = axis.dot(off);
             if (4 * (off.squaredNorm() - along * along) > level * level || r == k) continue;
-            const bool fits = std::all_of(group_.begin(), group_.end(),
-                                          [&](const Match* m) { return exchange(m->pair, match.pair, level); });
+            const bool fits = std::all_of(group_.begin(), group_.end(), [&](const Match* m) {
+                return exchange(m->pair, match.pair, level);
+            });
             if (!fits) continue;
             explained[r] = 1;
             group_.push_back(usable_[r]);
@@ -300,8 +314,9 @@ void PairSearch::report_group(double level, const Vector3d& middle, const Vector
         for (const Match* other : group_) {
             if (other == m) break;
             const Pair& q = other->pair;
-            cluster.tolerance = std::max({cluster.tolerance, std::abs(d(p.first, q.first) - d(p.second, q.second)),
-                                          std::abs(d(p.first, q.second) - d(p.second, q.first))});
+            cluster.tolerance =
+                std::max({cluster.tolerance, std::abs(d(p.first, q.first) - d(p.second, q.second)),
+                          std::abs(d(p.first, q.second) - d(p.second, q.first))});
         }
     }
     std::sort(cluster.pairs.begin(), cluster.pairs.end());
@@ -317,7 +332,8 @@ bool PairSearch::exchange(const Pair& p, const Pair& q, double level) const {
 }
 
 /// Is there a pair with a smaller first point about this axis? Then the axis is that pair's to report.
-bool PairSearch::smaller_pair_turns(const Vector3d& middle, const Vector3d& axis, double reach, double level) const {
+bool PairSearch::smaller_pair_turns(const Vector3d& middle, const Vector3d& axis, double reach,
+                                    double level) const {
     for (int r = 0; r < pair_.first; ++r) {
         const Vector3d off = at(r) - middle;
         const Vector3d image = middle + 2 * axis * axis.dot(off) - off;
@@ -352,7 +368,8 @@ int PairSearch::points_on_axis(const Vector3d& middle, const Vector3d& axis, dou
 void cluster_edges(const Scene& scene, SymmetryType type, const std::vector<PairEdge>& edges,
                    const std::vector<Pair>& lone, std::vector<PairCluster>& out) {
     const auto key = [&](const Pair& p) {
-        return static_cast<std::size_t>(p.first) * static_cast<std::size_t>(scene.size()) + static_cast<std::size_t>(p.second);
+        return static_cast<std::size_t>(p.first) * static_cast<std::size_t>(scene.size()) +
+               static_cast<std::size_t>(p.second);
     };
     // Number the pairs that occur, in order.
     std::vector<std::size_t> keys;
@@ -363,7 +380,9 @@ void cluster_edges(const Scene& scene, SymmetryType type, const std::vector<Pair
     }
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    const auto number = [&](const Pair& p) { return std::lower_bound(keys.begin(), keys.end(), key(p)) - keys.begin(); };
+    const auto number = [&](const Pair& p) {
+        return std::lower_bound(keys.begin(), keys.end(), key(p)) - keys.begin();
+    };
 
     std::vector<Consistency> graph;
     graph.reserve(edges.size());
@@ -371,10 +390,12 @@ void cluster_edges(const Scene& scene, SymmetryType type, const std::vector<Pair
     for (const PairEdge& e : edges) {
         const auto first = number(e.first), second = number(e.second);
         graph.push_back({e.tolerance, static_cast<int>(first), static_cast<int>(second), false});
-        if (e.tolerance <= 2 * scene.resolution) exact[static_cast<std::size_t>(first)] = exact[static_cast<std::size_t>(second)] = 1;
+        if (e.tolerance <= 2 * scene.resolution)
+            exact[static_cast<std::size_t>(first)] = exact[static_cast<std::size_t>(second)] = 1;
     }
     const std::vector<double> no_limit(keys.size(), std::numeric_limits<double>::infinity());
-    const Clustering clustering = complete_components(keys.size(), std::move(graph), no_limit, scene.resolution);
+    const Clustering clustering =
+        complete_components(keys.size(), std::move(graph), no_limit, scene.resolution);
     for (const Cluster& c : clustering.clusters) {
         PairCluster cluster{type, c.tolerance, {}, c.maximal};
         for (const int m : c.members) {

@@ -1,21 +1,21 @@
 // Options and points that cannot be used, and degenerate ones that can.
 //
 // Oracle: the contract of detect(): which Error code; a sentence that names the knob.
-#include "property/support/oracle.hpp"
-#include "property/support/results.hpp"
-#include "property/support/shapes.hpp"
-
 #include "insym/detect.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <ostream>
 #include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "property/support/oracle.hpp"
+#include "property/support/results.hpp"
+#include "property/support/shapes.hpp"
 
 namespace insym::property {
 namespace {
@@ -52,9 +52,8 @@ BadCall bad_max_tolerance(const std::string& name, double value) {
 }
 
 BadCall bad_coordinate(const std::string& name, double value) {
-    return {"coordinate_" + name, ErrorCode::invalid_input, "", [value](Call& call) {
-                call.points.positions[3][1] = value;
-            }};
+    return {"coordinate_" + name, ErrorCode::invalid_input, "",
+            [value](Call& call) { call.points.positions[3][1] = value; }};
 }
 
 BadCall bad_points(const std::string& name, const std::function<void(PointSet&)>& spoil) {
@@ -75,7 +74,8 @@ std::vector<BadCall> bad_calls() {
         bad_max_tolerance("nan", kNaN),
         bad_max_tolerance("infinite", kInfinity),
         {"types_empty", ErrorCode::invalid_option, "types", [](Call& call) { call.options.types = {}; }},
-        {"threads_negative", ErrorCode::invalid_option, "threads", [](Call& call) { call.context.threads = -1; }},
+        {"threads_negative", ErrorCode::invalid_option, "threads",
+         [](Call& call) { call.context.threads = -1; }},
         bad_coordinate("nan", kNaN),
         bad_coordinate("infinite", kInfinity),
         bad_coordinate("minus_infinite", -kInfinity),
@@ -90,8 +90,14 @@ std::vector<BadCall> bad_calls() {
                    }),
         bad_points("no_point", [](PointSet& p) { p.positions.clear(); }),
         bad_points("one_point", [](PointSet& p) { p.positions.resize(1); }),
-        bad_points("all_equal", [](PointSet& p) { p.positions.assign(8, {1, 2, 3}); }),
-        bad_points("too_few_labels", [](PointSet& p) { p.labels = {1, 2, 3}; }),
+        bad_points("all_equal",
+                   [](PointSet& p) {
+                       p.positions.assign(8, {1, 2, 3});
+                   }),
+        bad_points("too_few_labels",
+                   [](PointSet& p) {
+                       p.labels = {1, 2, 3};
+                   }),
         bad_points("too_many_labels", [](PointSet& p) { p.labels.assign(9, 1); }),
         bad_points("too_few_entities", [](PointSet& p) { p.entities.resize(7); }),
         bad_points("dimension_0", [](PointSet& p) { p.dimension = 0; }),

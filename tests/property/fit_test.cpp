@@ -4,18 +4,17 @@
 // least-squares fit (no other isometry of the kind has a lower sum of squares).
 #include "isometry/fit.hpp"
 
-#include "property/support/pose.hpp"
-
-#include <gtest/gtest.h>
-#include <rapidcheck.h>
-
 #include <Eigen/Geometry>
-
 #include <cmath>
 #include <numbers>
 #include <ostream>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include "property/support/pose.hpp"
 
 namespace insym::property {
 namespace {
@@ -71,11 +70,21 @@ struct Parameters {
 RigidMap standard_map(const Kind& kind, const Parameters& p) {
     RigidMap map;
     switch (kind.type) {
-        case SymmetryType::mirror: map.linear(1, 1) = -1; break;
-        case SymmetryType::inversion: map.linear = -Matrix3d::Identity(); break;
-        case SymmetryType::half_turn: map = turn_about_z(std::numbers::pi); break;
-        case SymmetryType::rotation: map = turn_about_z(p.angle); break;
-        case SymmetryType::translation: map.shift.x() = p.step; break;
+        case SymmetryType::mirror:
+            map.linear(1, 1) = -1;
+            break;
+        case SymmetryType::inversion:
+            map.linear = -Matrix3d::Identity();
+            break;
+        case SymmetryType::half_turn:
+            map = turn_about_z(std::numbers::pi);
+            break;
+        case SymmetryType::rotation:
+            map = turn_about_z(p.angle);
+            break;
+        case SymmetryType::translation:
+            map.shift.x() = p.step;
+            break;
         case SymmetryType::glide_reflection:
             map.linear(1, 1) = -1;
             map.shift.x() = p.step;
@@ -102,15 +111,16 @@ struct Posed {
 };
 
 Posed random_posed(const Kind& kind, Random& random) {
-    return {kind, {uniform(random, 0.3, 2.8), uniform(random, 0.2, 1)}, random_motion(kind.dimension, 3, random)};
+    return {
+        kind, {uniform(random, 0.3, 2.8), uniform(random, 0.2, 1)}, random_motion(kind.dimension, 3, random)};
 }
 
 std::vector<Link> links_of(const RigidMap& map, int dimension, int count, double noise, Random& random) {
     std::vector<Link> links;
     for (int k = 0; k < count; ++k) {
         const Vector3d p = random_vector(dimension, 1, random);
-        links.push_back({p + random_vector(dimension, noise, random),
-                         map(p) + random_vector(dimension, noise, random)});
+        links.push_back(
+            {p + random_vector(dimension, noise, random), map(p) + random_vector(dimension, noise, random)});
     }
     return links;
 }
@@ -135,17 +145,27 @@ double impurity(const Kind& kind, const RigidMap& map) {
     const double returns = (map * map).shift.norm();
     double own = 0;
     switch (kind.type) {
-        case SymmetryType::translation: own = (q - one).norm(); break;
-        case SymmetryType::glide_reflection: own = involution; break;
-        case SymmetryType::inversion: own = (q + one).norm(); break;
+        case SymmetryType::translation:
+            own = (q - one).norm();
+            break;
+        case SymmetryType::glide_reflection:
+            own = involution;
+            break;
+        case SymmetryType::inversion:
+            own = (q + one).norm();
+            break;
         case SymmetryType::mirror:
-        case SymmetryType::half_turn: own = involution + returns; break;
+        case SymmetryType::half_turn:
+            own = involution + returns;
+            break;
         case SymmetryType::rotation:
             own = kind.dimension == 3 ? std::abs(rotation_axis(q).dot(map.shift)) : 0;
             break;
-        default: break;
+        default:
+            break;
     }
-    const double plane = kind.dimension == 2 ? (q.col(2) - Vector3d::UnitZ()).norm() + std::abs(map.shift.z()) : 0;
+    const double plane =
+        kind.dimension == 2 ? (q.col(2) - Vector3d::UnitZ()).norm() + std::abs(map.shift.z()) : 0;
     return orthogonal + determinant + own + plane;
 }
 
@@ -161,7 +181,9 @@ RigidMap changed(const Kind& kind, const RigidMap& map, double size, Random& ran
             : Matrix3d(Eigen::AngleAxisd(more, rotation_axis(moved.linear * moved.linear.determinant()))
                            .toRotationMatrix());
     switch (kind.type) {
-        case SymmetryType::translation: moved.shift += random_vector(kind.dimension, size, random); break;
+        case SymmetryType::translation:
+            moved.shift += random_vector(kind.dimension, size, random);
+            break;
         case SymmetryType::glide_reflection: {
             const Vector3d step = random_vector(kind.dimension, size, random);
             moved.shift += (step + moved.linear * step) / 2;  // the part in the plane
@@ -179,7 +201,8 @@ RigidMap changed(const Kind& kind, const RigidMap& map, double size, Random& ran
             moved.linear = turn * moved.linear;
             moved.shift += random_vector(kind.dimension, size, random);
             break;
-        default: break;
+        default:
+            break;
     }
     return moved;
 }
@@ -206,7 +229,8 @@ TEST_P(FitOfType, is_exactly_of_its_kind_and_no_other_of_it_fits_better) {
         Random random(*rc::gen::arbitrary<std::uint64_t>());
         const double noise = *rc::gen::element(1e-6, 1e-3, 0.05, 0.2);
         const RigidMap truth = random_posed(kind, random).map();
-        const auto links = links_of(truth, kind.dimension, 3 + static_cast<int>(random() % 10), noise, random);
+        const auto links =
+            links_of(truth, kind.dimension, 3 + static_cast<int>(random() % 10), noise, random);
         const RigidMap fitted = fit_of_type(kind.type, links, kind.dimension);
         RC_ASSERT(impurity(kind, fitted) < 1e-9);
         const double least = sum_of_squares(fitted, links);
@@ -246,7 +270,8 @@ INSTANTIATE_TEST_SUITE_P(Space, FitOfType,
                          [](const auto& test) { return std::string(option_letter(test.param.type)); });
 INSTANTIATE_TEST_SUITE_P(Plane, FitOfType,
                          ::testing::Values(Kind{SymmetryType::mirror, 2}, Kind{SymmetryType::half_turn, 2},
-                                           Kind{SymmetryType::rotation, 2}, Kind{SymmetryType::translation, 2},
+                                           Kind{SymmetryType::rotation, 2},
+                                           Kind{SymmetryType::translation, 2},
                                            Kind{SymmetryType::glide_reflection, 2}),
                          [](const auto& test) { return std::string(option_letter(test.param.type)); });
 

@@ -2,16 +2,7 @@
 //
 // Oracles: invariance (the definitions speak of distances only, so pose, scale, order and mirror
 // image change nothing), the definitions of labels and of the words for an isometry, determinism.
-#include "property/support/oracle.hpp"
-#include "property/support/pose.hpp"
-#include "property/support/results.hpp"
-#include "property/support/shapes.hpp"
-
 #include "insym/detect.hpp"
-
-#include <gtest/gtest.h>
-#include <rapidcheck.h>
-#include <rapidcheck/gtest.h>
 
 #include <algorithm>
 #include <array>
@@ -24,6 +15,15 @@
 #include <string>
 #include <thread>
 #include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include "property/support/oracle.hpp"
+#include "property/support/pose.hpp"
+#include "property/support/results.hpp"
+#include "property/support/shapes.hpp"
 
 namespace insym::property {
 
@@ -199,8 +199,8 @@ RC_GTEST_PROP(AnySet, result_follows_the_definitions, ()) {
 
 RC_GTEST_PROP(AnySet, only_the_types_asked_for_are_listed, ()) {
     const PointSet points = without_labels(any_noisy_set(*rc::gen::element(2, 3)));
-    const SymmetryType wanted = *rc::gen::elementOf(std::vector<SymmetryType>(
-        kAllSymmetryTypes.begin(), kAllSymmetryTypes.end()));
+    const SymmetryType wanted =
+        *rc::gen::elementOf(std::vector<SymmetryType>(kAllSymmetryTypes.begin(), kAllSymmetryTypes.end()));
     DetectOptions options = noisy_options();
     const DetectResult all = detect(points, options);
     options.types = {};
@@ -248,13 +248,18 @@ Point mirrored_at(const Plane& plane, const Point& p) {
 Point image_in_words(SymmetryType type, const Isometry& words, const Point& p) {
     switch (type) {
         case SymmetryType::mirror:
-        case SymmetryType::glide_reflection: return mirrored_at(words.plane.value(), p);
-        case SymmetryType::inversion: return sum(sum({}, 2, words.center.value()), -1, p);
-        case SymmetryType::translation: return p;
+        case SymmetryType::glide_reflection:
+            return mirrored_at(words.plane.value(), p);
+        case SymmetryType::inversion:
+            return sum(sum({}, 2, words.center.value()), -1, p);
+        case SymmetryType::translation:
+            return p;
         case SymmetryType::rotation_reflection:
-            return mirrored_at(words.plane.value(), turned(turn_about(words.axis.value().direction, words.angle_deg),
-                                                           words.center.value(), p));
-        default: break;
+            return mirrored_at(
+                words.plane.value(),
+                turned(turn_about(words.axis.value().direction, words.angle_deg), words.center.value(), p));
+        default:
+            break;
     }
     if (words.dimension == 3)
         return turned(turn_about(words.axis.value().direction, words.angle_deg), words.axis.value().point, p);
@@ -268,7 +273,8 @@ double disagreement(const Symmetry& symmetry, double unit) {
     double worst = 0;
     for (const Point& p : {Point{0, 0, 0}, Point{unit, 0, 0}, Point{0, unit, 0}, Point{0, 0, unit}}) {
         if (symmetry.isometry.dimension == 2 && p[2] != 0) continue;
-        const Point rest = sum(symmetry.isometry.apply(p), -1, image_in_words(symmetry.type, symmetry.isometry, p));
+        const Point rest =
+            sum(symmetry.isometry.apply(p), -1, image_in_words(symmetry.type, symmetry.isometry, p));
         worst = std::max(worst, std::abs(std::sqrt(dot(rest, rest)) - std::abs(symmetry.isometry.step)));
     }
     return worst;
@@ -310,7 +316,8 @@ TEST(Determinism, any_number_of_threads_gives_the_same_bits) {
 TEST(Determinism, exact_ties_give_the_same_bits_on_any_number_of_threads) {
     const PointSet points = point_set(grid27().points, 3);
     const DetectResult one = detect_with_threads(points, 1);
-    for (int threads : {2, 4, 4, 4}) EXPECT_EQ(difference_in_bits(one, detect_with_threads(points, threads)), "");
+    for (int threads : {2, 4, 4, 4})
+        EXPECT_EQ(difference_in_bits(one, detect_with_threads(points, threads)), "");
 }
 
 TEST(Determinism, calls_at_once_do_not_disturb_each_other) {

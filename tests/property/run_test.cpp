@@ -2,19 +2,19 @@
 //
 // Oracle: the contract in run_context.hpp and detect.hpp; the definitions for what a run that
 // stopped early has found.
-#include "property/support/oracle.hpp"
-#include "property/support/results.hpp"
-#include "property/support/shapes.hpp"
-
 #include "insym/detect.hpp"
-
-#include <gtest/gtest.h>
 
 #include <atomic>
 #include <chrono>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include <gtest/gtest.h>
+
+#include "property/support/oracle.hpp"
+#include "property/support/results.hpp"
+#include "property/support/shapes.hpp"
 
 namespace insym::property {
 namespace {

@@ -3,15 +3,7 @@
 // Oracle: group theory. The closed forms below (GroupTheory) count elements and closed cycles; a
 // brute-force search over all isometries of the set (support/oracle) must agree with them, and then
 // judges the detector in any orientation, position, scale, order of points and mirror image.
-#include "property/support/oracle.hpp"
-#include "property/support/pose.hpp"
-#include "property/support/results.hpp"
-#include "property/support/shapes.hpp"
-
 #include "insym/detect.hpp"
-
-#include <gtest/gtest.h>
-#include <rapidcheck.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +14,14 @@
 #include <string>
 #include <tuple>
 #include <utility>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include "property/support/oracle.hpp"
+#include "property/support/pose.hpp"
+#include "property/support/results.hpp"
+#include "property/support/shapes.hpp"
 
 namespace insym::property {
 
@@ -111,10 +111,11 @@ Permutation image_of(const DetectResult& result, const Isometry& isometry, const
     Permutation image(points.size());
     for (std::size_t k = 0; k < points.size(); ++k) {
         const Point to = isometry.apply(points[k]);
-        const auto nearest = std::min_element(points.begin(), points.end(), [&](const Point& a, const Point& b) {
-            return distance(a, to) < distance(b, to);
-        });
-        image[static_cast<std::size_t>(original[k])] = original[static_cast<std::size_t>(nearest - points.begin())];
+        const auto nearest = std::min_element(
+            points.begin(), points.end(),
+            [&](const Point& a, const Point& b) { return distance(a, to) < distance(b, to); });
+        image[static_cast<std::size_t>(original[k])] =
+            original[static_cast<std::size_t>(nearest - points.begin())];
     }
     return image;
 }
@@ -143,7 +144,8 @@ std::string difference(const std::map<CanonicalCycle, SymmetryType>& allowed, co
         const auto listed = summary.cycles.find(cycle);
         const std::string name = text_of(cycle) + " " + std::string(option_letter(type));
         if (listed == summary.cycles.end()) return name + " is not listed";
-        if (listed->second.types != std::set{std::string(option_letter(type))}) return name + " has other types";
+        if (listed->second.types != std::set{std::string(option_letter(type))})
+            return name + " has other types";
     }
     for (const auto& [cycle, facts] : summary.cycles)
         if (cycle.second && !allowed.contains(cycle)) return text_of(cycle) + " is listed, but is no cycle";
@@ -261,16 +263,16 @@ Counts polygon_counts(int n) {
 /// - grid: counted by brute force only; its whole symmetries are those of O_h that keep a cycle.
 Counts solid_counts(const std::string& name) {
     const AxisCounts cubic = {{{kC, 4}, 3}, {{kS, 6}, 4}, {{kC2, 2}, 9}, {{kM, 0}, 9}, {{kI, 2}, 1}};
-    const AxisCounts icosahedral = {{{kC, 5}, 6},  {{kS, 6}, 10}, {{kS, 10}, 6}, {{kS, 0}, 6},
+    const AxisCounts icosahedral = {{{kC, 5}, 6},   {{kS, 6}, 10}, {{kS, 10}, 6}, {{kS, 0}, 6},
                                     {{kC2, 2}, 15}, {{kM, 0}, 15}, {{kI, 2}, 1}};
-    if (name == "tetrahedron")
-        return {24, {{{kS, 4}, 3}}, {{{kS, 4}, 3}, {{kC2, 2}, 3}, {{kM, 0}, 6}}};
+    if (name == "tetrahedron") return {24, {{{kS, 4}, 3}}, {{{kS, 4}, 3}, {{kC2, 2}, 3}, {{kM, 0}, 6}}};
     if (name == "octahedron") return {48, {{{kC, 4}, 3}, {{kS, 6}, 4}}, cubic};
     if (name == "icosahedron") return {120, {{{kC, 5}, 12}, {{kS, 6}, 20}, {{kS, 10}, 12}}, icosahedral};
     if (name == "dodecahedron") {
-        Counts counts = {120,
-                         {{{kC, 3}, 20}, {{kC, 4}, 30}, {{kS, 4}, 30}, {{kC, 5}, 24}, {{kS, 6}, 30}, {{kS, 10}, 24}},
-                         icosahedral};
+        Counts counts = {
+            120,
+            {{{kC, 3}, 20}, {{kC, 4}, 30}, {{kS, 4}, 30}, {{kC, 5}, 24}, {{kS, 6}, 30}, {{kS, 10}, 24}},
+            icosahedral};
         counts.axes[{kC, 3}] = 10;
         return counts;
     }
@@ -331,7 +333,8 @@ TEST_P(ExactShape, closed_cycles_and_whole_symmetries_are_those_of_the_group) {
 
     EXPECT_TRUE(rc::check("in any pose and order", [&] {
         const Pose pose = *any_pose(shape.dimension);
-        const auto order = shuffled_order(static_cast<int>(points.size()), *rc::gen::arbitrary<std::uint64_t>());
+        const auto order =
+            shuffled_order(static_cast<int>(points.size()), *rc::gen::arbitrary<std::uint64_t>());
         const PointSet input = placed(points, pose, order);
         const DetectResult result = detect(input, exact_options());
         RC_ASSERT(result.status == RunStatus::complete);

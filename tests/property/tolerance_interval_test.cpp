@@ -4,12 +4,6 @@
 // carried over literally.
 #include "cycles/tolerance_interval.hpp"
 
-#include "property/support/oracle.hpp"
-
-#include <gtest/gtest.h>
-#include <rapidcheck.h>
-#include <rapidcheck/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -18,6 +12,12 @@
 #include <set>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include "property/support/oracle.hpp"
 
 namespace insym::property {
 namespace {

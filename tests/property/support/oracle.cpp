@@ -1,7 +1,6 @@
 #include "property/support/oracle.hpp"
 
-#include "property/support/shapes.hpp"
-
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,7 +8,7 @@
 #include <optional>
 #include <sstream>
 
-#include <Eigen/Dense>
+#include "property/support/shapes.hpp"
 
 namespace insym::property {
 

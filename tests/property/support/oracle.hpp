@@ -21,8 +21,8 @@ ToleranceInterval reference_interval(std::vector<Span> spans, double floor);
 /// Points, labels and the lengths that rule everything: reference.PointSet.
 struct Problem {
     std::vector<Point> points;
-    std::vector<int> labels;  ///< one for each point
-    double resolution = 0;    ///< length
+    std::vector<int> labels;   ///< one for each point
+    double resolution = 0;     ///< length
     double max_tolerance = 0;  ///< length
 
     double length(int a, int b) const;

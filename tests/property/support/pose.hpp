@@ -3,13 +3,13 @@
 
 #include "insym/point_set.hpp"
 
-#include <rapidcheck.h>
-
 #include <array>
 #include <cstdint>
 #include <iosfwd>
 #include <random>
 #include <vector>
+
+#include <rapidcheck.h>
 
 namespace insym::property {
 

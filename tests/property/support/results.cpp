@@ -1,13 +1,13 @@
 #include "property/support/results.hpp"
 
-#include "property/support/pose.hpp"
-#include "property/support/shapes.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
 #include <sstream>
+
+#include "property/support/pose.hpp"
+#include "property/support/shapes.hpp"
 
 namespace insym::property {
 
@@ -28,9 +28,8 @@ std::vector<int> indices_in(const DetectResult& result, const std::vector<Point>
     std::vector<int> indices;
     for (const Point& p : result.points.positions) {
         const auto nearest =
-            std::min_element(positions.begin(), positions.end(), [&](const Point& a, const Point& b) {
-                return distance(a, p) < distance(b, p);
-            });
+            std::min_element(positions.begin(), positions.end(),
+                             [&](const Point& a, const Point& b) { return distance(a, p) < distance(b, p); });
         indices.push_back(static_cast<int>(nearest - positions.begin()));
     }
     return indices;
@@ -53,7 +52,8 @@ CanonicalCycle renamed(const Sequence& points, bool closed, const std::vector<in
 
 std::string key_of(const Symmetry& symmetry, const std::vector<int>& original) {
     std::set<std::string> cycles;
-    for (const Orbit& orbit : symmetry.cycles) cycles.insert(text_of(renamed(orbit.points, orbit.closed, original)));
+    for (const Orbit& orbit : symmetry.cycles)
+        cycles.insert(text_of(renamed(orbit.points, orbit.closed, original)));
     std::string key(option_letter(symmetry.type));
     key += " order " + (symmetry.order ? std::to_string(*symmetry.order) : "none");
     for (const std::string& cycle : cycles) key += " (" + cycle + ")";
@@ -118,7 +118,8 @@ Summary summary_of(const DetectResult& result, const std::vector<int>& original)
 
 Summary without_half_turns(Summary summary) {
     const std::string letters(option_letter(SymmetryType::half_turn));
-    std::erase_if(summary.symmetries, [&](const auto& item) { return item.first.starts_with(letters + " "); });
+    std::erase_if(summary.symmetries,
+                  [&](const auto& item) { return item.first.starts_with(letters + " "); });
     summary.count_by_type.erase(letters);
     return summary;
 }
@@ -257,10 +258,14 @@ Step random_step(int dimension, std::mt19937_64& random) {
     const int n = 4 + static_cast<int>(random() % 4);
     const double lift = uniform(random, 0.2, 0.4);
     switch (random() % 4) {
-        case 0: return {kTurn / n, 0, false, n};                                   // rotation
-        case 1: return {0, lift, dimension == 2, n};                               // translation or glide
-        case 2: return {dimension == 3 ? 0.9 : 0, lift, false, n + 1};             // screw or translation
-        default: return {kTurn / 6, 0, dimension == 3, 6};                         // rotation-reflection
+        case 0:
+            return {kTurn / n, 0, false, n};  // rotation
+        case 1:
+            return {0, lift, dimension == 2, n};  // translation or glide
+        case 2:
+            return {dimension == 3 ? 0.9 : 0, lift, false, n + 1};  // screw or translation
+        default:
+            return {kTurn / 6, 0, dimension == 3, 6};  // rotation-reflection
     }
 }
 

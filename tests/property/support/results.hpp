@@ -1,14 +1,14 @@
 // Comparing results: as sets that forget the order of points, and to the last bit.
 #pragma once
 
-#include "property/support/oracle.hpp"
-
 #include "insym/detect.hpp"
 
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "property/support/oracle.hpp"
 
 namespace insym::property {
 

@@ -104,7 +104,8 @@ Shape polygon(int n) {
 }
 
 std::vector<Shape> all_shapes() {
-    std::vector<Shape> shapes = {tetrahedron(), cube(), octahedron(), icosahedron(), dodecahedron(), grid27()};
+    std::vector<Shape> shapes = {tetrahedron(), cube(),         octahedron(),
+                                 icosahedron(), dodecahedron(), grid27()};
     for (int n = 3; n <= 12; ++n) {
         shapes.push_back(prism(n));
         shapes.push_back(antiprism(n));
