@@ -14,7 +14,7 @@ function(insym_target name)
   target_compile_options(${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
   if(INSYM_WARNINGS_AS_ERRORS)
     # GCC 12 wrongly sees an overlap in "literal" + std::string (GCC's bug 105651).
-    target_compile_options(${name} PRIVATE -Werror -Wno-error=restrict)
+    target_compile_options(${name} PRIVATE -Werror -Wno-restrict)
   endif()
   # Same bytes everywhere: no contraction of a*b+c, which depends on the machine.
   target_compile_options(${name} PRIVATE -ffp-contract=off)

@@ -19,6 +19,9 @@
 namespace insym {
 namespace {
 
+/// 24 n^2 bytes of distances are 5.4 GB then.
+constexpr std::size_t kMostPoints = 15000;
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -127,6 +130,11 @@ DetectResult detect(const PointSet& points, const DetectOptions& options, const 
             {"merged_points",
              std::to_string(result.merged_points) +
                  " points lay closer than the resolution to another and were merged with it"});
+    if (result.points.size() > kMostPoints)
+        throw Error(ErrorCode::invalid_input,
+                    std::to_string(result.points.size()) +
+                        " points are too many: method paper keeps all distances, for at most " +
+                        std::to_string(kMostPoints) + " points");
     const double share = options.max_tolerance ? *options.max_tolerance
                                                : automatic_tolerance(static_cast<int>(result.points.size()),
                                                                      options.resolution);

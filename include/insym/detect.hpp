@@ -108,7 +108,7 @@ struct DetectResult {
 /// the same for any number of threads. A run that is cancelled or reaches its deadline returns
 /// what it has, with `status` saying so; everything in it is valid.
 /// Throws Error: invalid_option for options out of range; invalid_input for fewer than two
-/// distinct points, coordinates that are not finite, or distances that overflow.
+/// distinct points, more than 15,000, coordinates that are not finite, or distances that overflow.
 INSYM_EXPORT DetectResult detect(const PointSet& points, const DetectOptions& options = {},
                                  const RunContext& context = {});
 

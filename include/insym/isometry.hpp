@@ -25,7 +25,7 @@ struct Plane {
 /// `linear` is orthogonal to rounding. In 2D only the upper left 2x2 block and the first two
 /// coordinates of everything else are used; the rest is the identity. Which of the optional
 /// elements are present follows from the type (definitions, section 7):
-///   T: none but `step`;  C, W, S: `axis` and `angle_deg` (S: also `plane` and `center`);
+///   T, Z: `axis` along the step, `step`;  C, W, S: `axis` and `angle_deg` (S: also `plane` and `center`);
 ///   in 2D C has `center` in place of `axis`;  M, Z: `plane`;  I: `center`.
 struct Isometry {
     int dimension = 3;

@@ -72,8 +72,6 @@ public:
                              const std::vector<Candidate>* among = nullptr);
 
 private:
-    struct Extremes;
-
     /// Visits the points at a distance of [low, high], and a few more: the bounds are computed from
     /// other distances, so rounding must not lose a point that the exact test after it would take.
     template <class Visit>
@@ -98,6 +96,20 @@ private:
         double high = 0;
     };
 
+    /// The distances that lead an orbit from either side, with the places where they start: enough to
+    /// know its span without the (at most two) distances of any one point.
+    struct Extremes {
+        double low[3];
+        double high[3];
+        int low_at[3];
+        int high_at[3];
+
+        Extremes();
+        void include(double d, int at);
+        Span without(int first, int second) const;
+        Span all() const { return {low[0], high[0]}; }
+    };
+
     const Scene& scene_;
     std::vector<Shell> shells_;
     std::vector<std::size_t> by_length_;
@@ -107,20 +119,6 @@ private:
     std::vector<int> twin_;      // for each point: what could replace it the last time, or -1
     int replaced_ = -1;          // the point that could be replaced the last time
     std::vector<double> table_;  // the distances within a short sequence, row by row
-};
-
-/// The distances that lead an orbit from either side, with the places where they start: enough to
-/// know its span without the (at most two) distances of any one point.
-struct ChainOracle::Extremes {
-    double low[3];
-    double high[3];
-    int low_at[3];
-    int high_at[3];
-
-    Extremes();
-    void include(double d, int at);
-    Span without(int first, int second) const;
-    Span all() const { return {low[0], high[0]}; }
 };
 
 }  // namespace insym

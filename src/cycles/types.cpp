@@ -197,7 +197,8 @@ bool TypeOracle::near_zigzag() {
     const Line line = fit_line(c, [&](std::size_t k) { return flat_[k].dot(along); });
     double even = 0, odd = 0;
     for (std::size_t i = 0; i < c; ++i) (i % 2 == 0 ? even : odd) += flat_[i].dot(across);
-    const double width = even / static_cast<double>((c + 1) / 2) - odd / static_cast<double>(c / 2);
+    const std::size_t odds = c / 2;
+    const double width = even / static_cast<double>(c - odds) - odd / static_cast<double>(odds);
 
     for (std::size_t i = 1; i < c; ++i)
         for (std::size_t j = 0; j < i; ++j) {

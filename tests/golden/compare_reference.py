@@ -73,7 +73,7 @@ def cluster_differences(ref, ps, report):
         have = {frozenset(ref.canonical(c["points"], c["closed"]) for c in s["cycles"]): s["tolerance"]["min"]
                 for s in report["symmetries"] if s["type"] == kind and not is_pairs(s)}
         for name, found in (("missing", want.keys() - have.keys()), ("no cluster", have.keys() - want.keys())):
-            differences += [f"{kind} {name}: {[sorted(c) for c in cluster]}" for cluster in found]
+            differences += [f"{kind} {name}: {sorted(points for points, _ in cluster)}" for cluster in found]
         differences += [f"{kind} at {have[c]:.9g}, should be at {want[c]:.9g}" for c in want.keys() & have.keys()
                         if abs(want[c] - have[c]) > 2 * ps.resolution]
     return differences

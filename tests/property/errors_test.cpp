@@ -42,17 +42,17 @@ void PrintTo(const BadCall& bad, std::ostream* out) {
 }
 
 BadCall bad_resolution(const std::string& name, double value) {
-    return {"resolution_" + name, ErrorCode::invalid_option, "resolution",
+    return {std::string("resolution_").append(name), ErrorCode::invalid_option, "resolution",
             [value](Call& call) { call.options.resolution = value; }};
 }
 
 BadCall bad_max_tolerance(const std::string& name, double value) {
-    return {"max_tolerance_" + name, ErrorCode::invalid_option, "tolerance",
+    return {std::string("max_tolerance_").append(name), ErrorCode::invalid_option, "tolerance",
             [value](Call& call) { call.options.max_tolerance = value; }};
 }
 
 BadCall bad_coordinate(const std::string& name, double value) {
-    return {"coordinate_" + name, ErrorCode::invalid_input, "",
+    return {std::string("coordinate_").append(name), ErrorCode::invalid_input, "",
             [value](Call& call) { call.points.positions[3][1] = value; }};
 }
 
