@@ -28,7 +28,7 @@ struct Match {
     double tolerance = 0;  // E_min of the union
     Vector3d off;          // from the middle of the pair at hand to the middle of this one
     Vector3d half;         // from the middle to the second point
-    double reach = 0;      // |off|: how well the two fix an axis
+    double axis_gap = 0;   // how well the two fix an axis
 };
 
 /// How far the least-squares M, I and half-turn of two pairs leave their points (all four links).
@@ -36,6 +36,8 @@ struct TwoPairFit {
     double mirror = 0;
     double inversion = 0;
     double half_turn = 0;
+    double axis_gap =
+        0;  ///< by how much the best axis of a half-turn beats the next: how well the two fix it
 
     /// The largest residual of a type that fits as well as any (definitions, section 6).
     double limit(const Scene& scene) const {
@@ -84,7 +86,10 @@ Matrix3d pair_axes(const Matrix3d& k, int dimension) {
 
 TwoPairFit fit_two_pairs(const Scene& scene, const Vector3d& u, const Vector3d& v, const Vector3d& w) {
     const Matrix3d k = u * u.transpose() + v * v.transpose() - w * w.transpose() / 2;
-    return residuals(u, v, w, pair_axes(k, scene.dimension()), scene.dimension());
+    const Matrix3d axes = pair_axes(k, scene.dimension());
+    TwoPairFit fit = residuals(u, v, w, axes, scene.dimension());
+    fit.axis_gap = axes.col(1).dot(k * axes.col(1)) - axes.col(0).dot(k * axes.col(0));
+    return fit;
 }
 
 /// An edge of the graph of pairs, for M and for I (in 2D the half-turn).
@@ -231,7 +236,7 @@ void PairSearch::examine(int q, int image, double tolerance) {
     if (types_.contains(central_type()) && fit.inversion <= limit)
         out_.central_edges.push_back({tolerance, pair_, other});
     if (fit.half_turn <= limit && scene_.dimension() == 3)
-        matches_.push_back({{q, image}, tolerance, w, v, w.norm()});
+        matches_.push_back({{q, image}, tolerance, w, v, fit.axis_gap});
 }
 
 /// The mirror of the pair alone moves q by |a^2 - b^2| / |P1 P2|.
@@ -253,9 +258,9 @@ int PairSearch::points_in_own_middle() const {
 /// Half-turns: the largest sets of mutually consistent pairs about one axis, at a ladder of tolerances
 /// so that an exact axis is not lost in the approximate one around it.
 void PairSearch::group_by_axis() {
-    // Best fixed axes first: those through far middles.
+    // Best fixed axes first: those through far middles, or across chords of different directions.
     std::sort(matches_.begin(), matches_.end(), [](const Match& x, const Match& y) {
-        return x.reach != y.reach ? x.reach > y.reach : x.pair < y.pair;
+        return x.axis_gap != y.axis_gap ? x.axis_gap > y.axis_gap : x.pair < y.pair;
     });
     std::size_t last = 0;
     for (double level = scene_.max_tolerance;; level = std::max(level / kLadder, scene_.resolution)) {
@@ -284,10 +289,11 @@ void PairSearch::group_at(double level) {
             const Match& match = *usable_[r];
             // The half-turn moves the points of a pair off by twice its middle's way off the axis, and by
             // twice the chord's share along it.
-            if (2 * std::abs(axis.dot(match.half)) > level) continue;
+            // An axis fitted to two pairs may be off by as much again as the pairs are.
+            if (std::abs(axis.dot(match.half)) > level) continue;
             const Vector3d off = match.off - w / 2;
             const double along = axis.dot(off);
-            if (4 * (off.squaredNorm() - along * along) > level * level || r == k) continue;
+            if (off.squaredNorm() - along * along > level * level || r == k) continue;
             const bool fits = std::all_of(group_.begin(), group_.end(), [&](const Match* m) {
                 return exchange(m->pair, match.pair, level);
             });

@@ -222,4 +222,15 @@ TEST(Silence, nothing_is_printed) {
     EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
+// Libraries below must not speak either; each warns once in a process, and each test is one.
+TEST(Silence, nothing_is_printed_for_more_threads_than_cores) {
+    RunContext context;
+    context.threads = 64;
+    ::testing::internal::CaptureStdout();
+    ::testing::internal::CaptureStderr();
+    detect(small_set(), {}, context);
+    EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
 }  // namespace insym::property
