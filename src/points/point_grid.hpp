@@ -11,8 +11,8 @@ namespace insym {
 
 /// Immutable after construction; queries are thread-safe. Memory linear in the points. A query
 /// costs the number of grid cells that the ball touches plus the points in them; it is made for
-/// balls of about the grid's cell or smaller. (nanoflann answers the same question; this index
-/// answers it several times faster for the small balls of the detector, most of which are empty.)
+/// balls of about the grid's cell or smaller. (nanoflann, a k-d tree, was several times
+/// slower for the small balls of the detector, most of which are empty.)
 class PointGrid {
 public:
     /// `cell` > 0 fixes the size of a cell; 0: about one point in a cell.

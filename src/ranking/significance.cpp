@@ -9,16 +9,14 @@ namespace insym {
 int degrees_of_freedom(SymmetryType type, int dimension) {
     const bool plane = dimension == 2;
     switch (type) {
-        case SymmetryType::mirror:
-            return plane ? 2 : 3;
         case SymmetryType::inversion:
             return 3;
         case SymmetryType::half_turn:
             return plane ? 2 : 4;
+        case SymmetryType::mirror:
         case SymmetryType::translation:
             return plane ? 2 : 3;
         case SymmetryType::rotation:
-            return plane ? 3 : 5;
         case SymmetryType::glide_reflection:
             return plane ? 3 : 5;
         case SymmetryType::rotation_reflection:

@@ -46,6 +46,7 @@ void add_of_type(const Scene& scene, const std::vector<Cycle>& cycles, SymmetryT
     if (members.empty()) return;
 
     std::vector<double> tolerance_max;
+    tolerance_max.reserve(members.size());
     for (const Cycle* c : members) tolerance_max.push_back(c->tolerance.max);
     const Clustering clustering = complete_components(
         members.size(), consistent_cycles(scene, members, type, monitor), tolerance_max, scene.resolution);
