@@ -81,8 +81,8 @@ private:
     bool expand_four(std::span<const int> four);
     bool expand_side(std::span<const int> four, const std::vector<Candidate>& fifths);
     using Ends = std::pair<Candidate, Candidate>;  // the best candidates at the left and at the right end
-    bool follow(std::span<const int> start, const std::optional<Ends>& ends = {});
-    bool follow_path(std::optional<Ends> ends);
+    bool follow(std::span<const int> start);
+    bool follow_path(std::optional<Ends> ends = {});
     Ends best_ends(double limit);
     End better_end(const Candidate& left, const Candidate& right) const;
     bool follow_both(int left, int right);
@@ -195,7 +195,7 @@ bool Expansion::expand_four(std::span<const int> four) {
     constexpr Candidate kNobody{std::numeric_limits<double>::infinity(), -1};
     const auto best = [&](const auto& list) { return list.empty() ? kNobody : list.front(); };
     four_alone_.reset();
-    bool found = follow(four, Ends{best(left_fifths_), best(right_fifths_)});
+    bool found = follow_path(Ends{best(left_fifths_), best(right_fifths_)});
     if (scene_.dimension() == 3) {
         const int reversed[] = {four[3], four[2], four[1], four[0]};
         found = expand_side(four, right_fifths_) && found;
@@ -231,13 +231,13 @@ int Expansion::side(std::span<const int> chain, int point) const {
 
 /// Adds the point of least E_min at either end until the chain closes at no greater tolerance or
 /// nothing fits; keeps the longest chain met that is unambiguous and has a type. True if there is one.
-/// `ends`: those of `start`, if known.
-bool Expansion::follow(std::span<const int> start, const std::optional<Ends>& ends) {
+bool Expansion::follow(std::span<const int> start) {
     chain_.assign(start);
-    return follow_path(ends);
+    return follow_path();
 }
 
-/// The same from chain_ on. What follows depends on the chain alone, so chains met before end it.
+/// The same from chain_ on, whose best candidates are `ends`, if known. What follows depends on the chain
+/// alone, so chains met before end it.
 bool Expansion::follow_path(std::optional<Ends> ends) {
     const std::size_t first_step = path_.size();
     bool found = false;
@@ -292,10 +292,10 @@ End Expansion::better_end(const Candidate& left, const Candidate& right) const {
 bool Expansion::follow_both(int left, int right) {
     const std::vector<int> here(chain_.points().begin(), chain_.points().end());
     chain_.add(right, End::right);
-    const bool found = follow_path({});
+    const bool found = follow_path();
     chain_.assign(here);
     chain_.add(left, End::left);
-    const bool found_left = follow_path({});
+    const bool found_left = follow_path();
     chain_.assign(here);
     return found && found_left;
 }
