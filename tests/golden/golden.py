@@ -42,10 +42,11 @@ def specification(shared, module):
 
 
 def detect(insym, path, max_tolerance, *more):
-    """The report of method paper on a file; an exception where the program fails."""
+    """The report of method paper on a file, of a model on its vertices, for which answers are known; an exception
+    where the program fails."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "report.json"
-        command = [insym.resolve(), "detect", path, "--method", "paper", "--json", out, "--quiet",
+        command = [insym.resolve(), "detect", path, "--method", "paper", "--points", "vertices", "--json", out, "--quiet",
                    "--max-tolerance", repr(float(max_tolerance)), *more]
         run = subprocess.run([str(part) for part in command], capture_output=True, text=True)
         if run.returncode != 0:
