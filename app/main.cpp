@@ -3,6 +3,7 @@
 #include "insym/detect.hpp"
 #include "insym/error.hpp"
 #include "insym/guarded_read.hpp"
+#include "insym/read_mesh.hpp"
 #include "insym/read_model.hpp"
 #include "insym/read_points.hpp"
 #include "insym/report.hpp"
@@ -13,6 +14,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <new>
@@ -100,14 +102,16 @@ void refuse_unknown_models(const std::string& path) {
                                   kind->second + "=ON"));
 }
 
-using ModelReader = Input (*)(const std::string& path, const ReadModelOptions& options);
-
-/// The reader for that ending, as far as this program has one; null for points.
-ModelReader model_reader([[maybe_unused]] const std::string& path) {
+/// The reader of the model or mesh, as far as this program has one; none for points.
+std::function<Input()> model_reader([[maybe_unused]] const Options& options) {
 #ifdef INSYM_WITH_BREP
-    if (is_model_path(path)) return read_model_file;
+    if (is_model_path(options.input))
+        return [&] { return read_model_file(options.input, options.read_mesh.model); };
 #endif
-    return nullptr;
+#ifdef INSYM_WITH_MESH
+    if (is_mesh_path(options.input)) return [&] { return read_mesh_file(options.input, options.read_mesh); };
+#endif
+    return {};
 }
 
 struct LoadedInput {
@@ -117,11 +121,10 @@ struct LoadedInput {
 
 LoadedInput load(const Options& options) {
     if (options.input == "-") return {read_points(std::cin, "-", options.read_points), false};
-    if (const auto read = model_reader(options.input)) {
+    if (const auto read = model_reader(options)) {
         if (!options.read_points.columns.empty())
             throw Error(ErrorCode::invalid_option, "--columns is for points in text, not for a model");
-        const auto read_it = [&] { return read(options.input, options.read_model); };
-        return {read_guarded(options.input, read_it, options.limits), true};
+        return {read_guarded(options.input, read, options.limits), true};
     }
     refuse_unknown_models(options.input);
     return {read_points_file(options.input, options.read_points), false};

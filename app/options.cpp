@@ -29,14 +29,15 @@ output that cannot be written; 3 the input cannot be read; 4 the input is read b
 early by a time limit or an interrupt, with a valid report of what was found. See insym detect --help.)";
 
 constexpr const char* kDetectFooter =
-    R"(Input: models (STEP .step .stp, IGES .iges .igs, BREP .brep), or points as text (.xyz, .csv, .txt, others):
-2 columns are x y, 3 are x y z, 4 are x y z label (a whole number; only points of one label are matched).
+    R"(Input: models (STEP .step .stp, IGES .iges .igs, BREP .brep), meshes (.stl, .obj, .ply, .off), or points as
+text (.xyz, .csv, .txt, others): 2 columns are x y, 3 are x y z, 4 are x y z label (a whole number; only points of one label are matched).
 The chemists' .xyz is read too: elements become labels. Lines that begin with # are comments.
 
-Models are read in a process of their own: what crashes there, hangs, or goes beyond --import-memory or
+Models and meshes are read in a process of their own: what crashes there, hangs, or goes beyond --import-memory or
 --import-time ends with status 3 and a sentence.
 --points: a list of vertices, edges and faces, each entity with one point (the centre of a circle, the
-middle of a hole's axis, ...); representative, the default, is all three.
+middle of a hole's axis, ...); representative, the default, is all three. Of meshes: corners, rims and other sharp
+lines, large flat regions.
 --labels: what must agree for points to be matched: entity (kind, geometry, hole or boss, and radius, length and
 area to within --label-tolerance), kind (vertex, edge, face), none.
 
@@ -57,7 +58,7 @@ cannot be read; 4 the input is invalid; 5 stopped early, the report is valid and
 /// The options as they were typed; empty: not given.
 struct Typed {
     std::string input, json, html, columns, time_limit;
-    std::string points = "representative", labels = "entity", label_tolerance = "0.01";
+    std::string points = "representative", labels = "entity", label_tolerance = "0.01", sharp_angle = "30";
     std::string import_memory = "4096", import_time = "300";
     std::string method = "paper", types = "M,I,C2,C,T,Z,S,W";
     std::string max_tolerance = "auto", resolution = "1e-6", limit = "20", threads = "0";
@@ -136,6 +137,13 @@ double parse_label_tolerance(const std::string& text) {
     return *value;
 }
 
+double parse_sharp_angle(const std::string& text) {
+    const auto value = to_number<double>(text);
+    if (!value || !(*value > 0 && *value < 180))
+        fail_value("--sharp-angle", text, "an angle in degrees is needed, above 0 and below 180");
+    return *value;
+}
+
 std::vector<std::string> split_at_commas(const std::string& text) {
     std::vector<std::string> words;
     for (std::size_t at = 0; at <= text.size();) {
@@ -189,7 +197,7 @@ void check_choice(const std::string& option, const std::string& value,
 
 /// --points: which entities of a model; and the words for the report, in a fixed order.
 void parse_points(const std::string& text, Options& options) {
-    ReadModelOptions& model = options.read_model;
+    ReadModelOptions& model = options.read_mesh.model;
     model.vertices = model.edges = model.faces = false;
     const std::vector<std::string> known = {"representative", "vertices", "edges", "faces"};
     for (const std::string& word : split_at_commas(text)) {
@@ -237,6 +245,8 @@ void declare(CLI::App& detect, Typed& typed) {
         "What tells points of a model apart, see below (default: entity)");
     add("--label-tolerance", typed.label_tolerance, "F",
         "Share by which equal radii, lengths and areas may differ (default: 0.01)");
+    add("--sharp-angle", typed.sharp_angle, "DEG",
+        "Edges of a mesh that turn by more are sharp (default: 30)");
     add("--import-memory", typed.import_memory, "MIB",
         "Most memory to read a model with (default: 4096 MiB)");
     add("--import-time", typed.import_time, "S", "Most time to read a model in (default: 300 seconds)");
@@ -315,7 +325,9 @@ Options checked(const Typed& typed) {
     options.threads = parse_count("--threads", typed.threads, kMostThreads);
     if (!typed.time_limit.empty()) options.time_limit_s = parse_seconds("--time-limit", typed.time_limit);
     parse_points(typed.points, options);
-    options.read_model.labels = {parse_labels(typed.labels), parse_label_tolerance(typed.label_tolerance)};
+    options.read_mesh.model.labels = {parse_labels(typed.labels),
+                                      parse_label_tolerance(typed.label_tolerance)};
+    options.read_mesh.sharp_angle_deg = parse_sharp_angle(typed.sharp_angle);
     options.limits = {parse_mebibytes("--import-memory", typed.import_memory),
                       parse_seconds("--import-time", typed.import_time)};
     options.quiet = typed.quiet;

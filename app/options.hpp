@@ -3,7 +3,7 @@
 
 #include "insym/detect.hpp"
 #include "insym/guarded_read.hpp"
-#include "insym/read_model.hpp"
+#include "insym/read_mesh.hpp"
 #include "insym/read_points.hpp"
 
 #include <optional>
@@ -16,8 +16,8 @@ struct Options {
     std::string json;   ///< a path, "-" for standard output, empty for no report
     DetectOptions detect;
     ReadPointsOptions read_points;
-    ReadModelOptions read_model;
-    ReadLimits limits;   ///< of reading a model
+    ReadMeshOptions read_mesh;  ///< of models, too
+    ReadLimits limits;          ///< of reading a model
     std::string points;  ///< what stands for a model, as in the report: "representative", "edges,faces", ...
     int limit = 0;       ///< symmetries in the table, 0: all
     int threads = 0;     ///< 0: all cores

@@ -51,8 +51,8 @@ public:
         return parent == i ? i : parent = find(parent);
     }
     void join(int i, int j) {
-        const auto [low, high] = std::minmax(find(i), find(j));
-        parent_[static_cast<std::size_t>(high)] = low;
+        const int a = find(i), b = find(j);
+        parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
     }
 
 private:
