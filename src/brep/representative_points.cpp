@@ -182,7 +182,7 @@ void BodyEntities::append_faces(std::vector<RepresentativePoint>& points) {
             ids.push_back(all_.faces.FindIndex(faces_(i)));
         }
         const auto [position, entity] =
-            describe_patch(surfaces_[static_cast<std::size_t>(leader - 1)], faces);
+            describe_patch(surfaces_[static_cast<std::size_t>(leader - 1)], faces, tolerance_);
         append(position, entity, ids, points);
     }
 }

@@ -10,6 +10,7 @@
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
 #include <ShapeFix_Face.hxx>
+#include <ShapeFix_Wire.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <gp_Cone.hxx>
@@ -43,8 +44,9 @@ const char* name_of(SurfaceType type) {
 }
 
 /// The face as Open CASCADE's integrals need it: STEP files mostly leave out the curves in the surface's
-/// parameters, and some the seam.
-TopoDS_Shape with_parameter_curves(const TopoDS_Face& face) {
+/// parameters, and some the seam. What else the healer would look for takes most of its time and is not
+/// needed.
+TopoDS_Shape with_parameter_curves(const TopoDS_Face& face, double precision) {
     bool complete = true;
     for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next()) {
         double first = 0, last = 0;
@@ -52,6 +54,12 @@ TopoDS_Shape with_parameter_curves(const TopoDS_Face& face) {
     }
     if (complete) return face;
     ShapeFix_Face fix(face);
+    fix.SetPrecision(precision);
+    fix.FixIntersectingWiresMode() = fix.FixLoopWiresMode() = fix.FixSmallAreaWireMode() = 0;
+    ShapeFix_Wire& wire = *fix.FixWireTool();
+    wire.FixSelfIntersectionMode() = wire.FixNotchedEdgesMode() = wire.FixTailMode() = wire.FixSmallMode() =
+        0;
+    wire.FixGaps2dMode() = wire.FixGaps3dMode() = wire.FixSameParameterMode() = 0;
     fix.Perform();
     return fix.Result();
 }
@@ -185,7 +193,8 @@ bool Surface::continues(const Surface& other, double tolerance) const {
            std::abs(half_angle - other.half_angle) <= kParallel;
 }
 
-std::pair<gp_Pnt, Entity> describe_patch(const Surface& surface, const std::vector<TopoDS_Face>& faces) {
+std::pair<gp_Pnt, Entity> describe_patch(const Surface& surface, const std::vector<TopoDS_Face>& faces,
+                                         double tolerance) {
     Entity entity;
     entity.kind = EntityKind::face;
     entity.geometry = name_of(surface.type);
@@ -200,7 +209,7 @@ std::pair<gp_Pnt, Entity> describe_patch(const Surface& surface, const std::vect
             add_planar_integrals(face, surface.axis, area, moment);
             continue;
         }
-        const TopoDS_Shape complete = with_parameter_curves(face);
+        const TopoDS_Shape complete = with_parameter_curves(face, tolerance);
         add_integrals(complete, area, moment);
         if (has_axis(surface.type)) reach.add(complete);
     }

@@ -31,6 +31,7 @@ struct Surface {
 
 /// The special point of the faces, which lie on one surface and adjoin, and what is known of them (ids
 /// apart).
-std::pair<gp_Pnt, Entity> describe_patch(const Surface& surface, const std::vector<TopoDS_Face>& faces);
+std::pair<gp_Pnt, Entity> describe_patch(const Surface& surface, const std::vector<TopoDS_Face>& faces,
+                                         double tolerance);
 
 }  // namespace insym
