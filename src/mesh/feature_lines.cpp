@@ -76,6 +76,66 @@ private:
     std::map<std::pair<int, int>, bool> used_;
 };
 
+// Parting -------------------------------------------------------------------------------------
+
+/// An edge so many times longer than the median of its line is a straight piece of it: the edges of a curve
+/// that a mesh approximates are all about as long.
+constexpr double kLongEdge = 4;
+
+/// Parts lines where they run smoothly from straight into curved: a slot's outline, a rounded corner.
+class LineParter {
+public:
+    LineParter(const TriangleMesh& mesh, FeatureLines& out) : mesh_(mesh), out_(out) {}
+
+    void part(FeatureLine line) {
+        if (line.closed) line.vertices.push_back(line.vertices.front());
+        const std::vector<char> is_long = long_edges(line.vertices);
+        if (std::find(is_long.begin(), is_long.end(), 1) == is_long.end()) {
+            if (line.closed) line.vertices.pop_back();
+            out_.lines.push_back(std::move(line));
+            return;
+        }
+        if (line.closed) begin_at_long_edge(line.vertices, is_long);
+        const std::vector<char> straight = line.closed ? long_edges(line.vertices) : is_long;
+        std::size_t start = 0;
+        for (std::size_t i = 1; i < line.vertices.size(); ++i) {
+            const bool last = i + 1 == line.vertices.size();
+            if (!last && straight[i] == 0 && straight[i - 1] == 0) continue;
+            out_.lines.push_back({{line.vertices.begin() + static_cast<std::ptrdiff_t>(start),
+                                   line.vertices.begin() + static_cast<std::ptrdiff_t>(i) + 1},
+                                  false});
+            if (!last || line.closed) out_.corners.push_back(line.vertices[i]);
+            start = i;
+        }
+    }
+
+private:
+    std::vector<char> long_edges(const std::vector<int>& vertices) const {
+        std::vector<double> lengths;
+        for (std::size_t i = 1; i < vertices.size(); ++i)
+            lengths.push_back((mesh_.vertices[static_cast<std::size_t>(vertices[i])] -
+                               mesh_.vertices[static_cast<std::size_t>(vertices[i - 1])])
+                                  .norm());
+        std::vector<double> sorted = lengths;
+        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+        std::nth_element(sorted.begin(), middle, sorted.end());
+        std::vector<char> is_long;
+        for (const double length : lengths) is_long.push_back(length > kLongEdge * *middle ? 1 : 0);
+        return is_long;
+    }
+
+    /// `vertices` ends with its first, also afterwards.
+    static void begin_at_long_edge(std::vector<int>& vertices, const std::vector<char>& is_long) {
+        const auto first = std::find(is_long.begin(), is_long.end(), 1) - is_long.begin();
+        vertices.pop_back();
+        std::rotate(vertices.begin(), vertices.begin() + first, vertices.end());
+        vertices.push_back(vertices.front());
+    }
+
+    const TriangleMesh& mesh_;
+    FeatureLines& out_;
+};
+
 // Describing ----------------------------------------------------------------------------------
 
 struct Circle {
@@ -188,7 +248,12 @@ std::pair<Vector3d, Entity> describe_open(const Points& points, Entity entity) {
 
 FeatureLines find_feature_lines(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges,
                                 double sharp_angle_deg) {
-    return SharpGraph(mesh, edges, sharp_angle_deg).trace();
+    FeatureLines traced = SharpGraph(mesh, edges, sharp_angle_deg).trace();
+    FeatureLines parted{std::move(traced.corners), {}};
+    LineParter parter(mesh, parted);
+    for (FeatureLine& line : traced.lines) parter.part(std::move(line));
+    std::sort(parted.corners.begin(), parted.corners.end());
+    return parted;
 }
 
 std::pair<Vector3d, Entity> describe_line(const TriangleMesh& mesh, const FeatureLine& line) {
