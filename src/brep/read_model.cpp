@@ -57,7 +57,8 @@ bool is_finite(const RepresentativePoint& point) {
 }
 
 Input read_with_open_cascade(const std::string& path, const Format& format, const ReadModelOptions& options) {
-    const OcctSession session;
+    // Vertices need no repair, which takes most of the time and puts more of them where seams happen to lie.
+    const OcctSession session(options.edges || options.faces ? Healing::on : Healing::off);
     const ModelShape model = format.read(path);
     Input input;
     input.path = path;

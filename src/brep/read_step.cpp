@@ -1,4 +1,4 @@
-// STEP: text to shape. Nothing is healed; what is damaged is refused with a sentence.
+// STEP: text to shape. What is damaged is refused with a sentence.
 #include <cmath>
 #include <optional>
 #include <sstream>
