@@ -82,14 +82,25 @@ Integrals integrals_of(const TopoDS_Shape& wire, const gp_Ax2& frame) {
     return sums;
 }
 
+/// An origin for the sums. Where edges do not quite meet, these depend on it: it must go with the face,
+/// wherever its edges begin. Being near also keeps the digits of a small face.
+gp_Pnt middle_of_edges(const TopoDS_Face& face) {
+    gp_XYZ sum(0, 0, 0);
+    int count = 0;
+    for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next()) {
+        if (BRep_Tool::Degenerated(TopoDS::Edge(edge.Current()))) continue;
+        const BRepAdaptor_Curve curve(TopoDS::Edge(edge.Current()));
+        const gp_Pnt ends[] = {curve.Value(curve.FirstParameter()), curve.Value(curve.LastParameter())};
+        sum += ends[0].XYZ() + ends[1].XYZ();
+        count += 2;
+    }
+    return gp_Pnt(count > 0 ? sum / count : sum);
+}
+
 }  // namespace
 
 void add_planar_integrals(const TopoDS_Face& face, const gp_Ax1& axis, double& area, gp_XYZ& moment) {
-    TopExp_Explorer any(face, TopAbs_EDGE);
-    if (!any.More()) return;
-    // An origin at the face itself keeps the digits of a small face far from the plane's own.
-    const BRepAdaptor_Curve first(TopoDS::Edge(any.Current()));
-    const gp_Ax2 frame(first.Value(first.FirstParameter()), axis.Direction());
+    const gp_Ax2 frame(middle_of_edges(face), axis.Direction());
     std::vector<Integrals> loops;
     for (TopExp_Explorer wire(face, TopAbs_WIRE); wire.More(); wire.Next())
         loops.push_back(integrals_of(wire.Current(), frame));

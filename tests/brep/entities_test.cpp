@@ -192,7 +192,10 @@ std::string difference(const PointSet& a, const gp_Trsf& map, const PointSet& b,
         const Entity& e = a.entities[i];
         const std::string name = e.geometry + " " + std::to_string(e.id);
         if (nearest == b.size()) return name + " has no counterpart";
-        if (const double off = distance(p, b.positions[nearest]); off > tolerance)
+        // Centroids of B-splines are as good as the curves in parameters that Open CASCADE puts in for the
+        // file's.
+        const double reach = e.geometry == "surface" ? 10 * tolerance : tolerance;
+        if (const double off = distance(p, b.positions[nearest]); off > reach)
             return name + " is off by " + std::to_string(off);
         taken[nearest] = 1;
     }
@@ -253,10 +256,10 @@ TEST_P(Model, PointsGoWithTheModel) {
 TEST_P(Model, CuttingCirclesIntoArcsChangesNothing) {
     if (too_slow()) GTEST_SKIP() << "too slow with a sanitizer";
     const TopoDS_Shape shape = plain_read(GetParam().string());
-    // Cutting turns surfaces of other kinds and B-splines into more faces, which are then more entities.
     const Input original = read(shape);
     for (const Entity& e : original.points.entities)
-        if (e.geometry == "surface") GTEST_SKIP() << "has surfaces that are not cut along themselves";
+        if (e.geometry == "surface" || e.geometry == "spline")
+            GTEST_SKIP() << "has B-splines, which are cut with the round faces";
     ShapeUpgrade_ShapeDivideAngle divide(std::numbers::pi / 2, shape);
     divide.Perform();
     const Input cut = read(divide.Result());
