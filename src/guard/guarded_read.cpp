@@ -86,6 +86,17 @@ bool write_all(int descriptor, std::string_view bytes) {
     return true;
 }
 
+/// Has the address space come near its limit? Readers tend to call a file damaged when memory runs out.
+bool ran_short_of_memory(std::size_t before, const ReadLimits& limits) {
+    constexpr double kNear = 0.8;
+    std::ifstream file("/proc/self/status");
+    std::size_t peak_kib = 0;
+    for (std::string word; file >> word;)
+        if (word == "VmPeak:" && file >> peak_kib) break;
+    return kLimitMemory && static_cast<double>(peak_kib) * 1024 >
+                               static_cast<double>(before) + kNear * static_cast<double>(limits.memory_bytes);
+}
+
 Outcome outcome_of(const std::string& name, const std::function<Input()>& read) {
     try {
         return read();
@@ -104,8 +115,14 @@ Outcome outcome_of(const std::string& name, const std::function<Input()>& read) 
                             const ReadLimits& limits) {
     int status = 1;
     try {
+        const std::size_t before = used_bytes();
         confine(limits);
-        status = write_all(descriptor, to_bytes(outcome_of(name, read))) ? 0 : 1;
+        const Outcome outcome = outcome_of(name, read);
+        const Error* error = std::get_if<Error>(&outcome);
+        if (error != nullptr && error->code() == ErrorCode::cannot_read &&
+            ran_short_of_memory(before, limits))
+            throw std::bad_alloc();
+        status = write_all(descriptor, to_bytes(outcome)) ? 0 : 1;
     } catch (const std::bad_alloc&) {
         status = kOutOfMemory;
     } catch (...) {
