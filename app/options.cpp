@@ -30,7 +30,8 @@ early by a time limit or an interrupt, with a valid report of what was found. Se
 
 constexpr const char* kDetectFooter =
     R"(Input: models (STEP .step .stp, IGES .iges .igs, BREP .brep), meshes (.stl, .obj, .ply, .off), or points as
-text (.xyz, .csv, .txt, others): 2 columns are x y, 3 are x y z, 4 are x y z label (a whole number; only points of one label are matched).
+text (.xyz, .csv, .txt, others): 2 columns are x y, 3 are x y z, 4 are x y z label (a whole number; only points
+of one label are matched).
 The chemists' .xyz is read too: elements become labels. Lines that begin with # are comments.
 
 Models and meshes are read in a process of their own: what crashes there, hangs, or goes beyond --import-memory or
