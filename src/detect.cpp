@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include "cycles/detect_cycles.hpp"
@@ -147,7 +148,9 @@ DetectResult detect(const PointSet& points, const DetectOptions& options, const 
     result.max_tolerance = share * result.diameter;
 
     RunMonitor monitor(context);
-    tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
+    // More threads than cores would only make TBB complain on standard error.
+    const int cores = tbb::info::default_concurrency();
+    tbb::task_arena arena(context.threads > 0 ? std::min(context.threads, cores) : cores);
     arena.execute([&] {
         const Distances distances(result.points.positions);
         const Scene scene{result.points, distances, result.diameter, result.resolution, result.max_tolerance};
