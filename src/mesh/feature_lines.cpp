@@ -120,6 +120,7 @@ private:
         const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
         std::nth_element(sorted.begin(), middle, sorted.end());
         std::vector<char> is_long;
+        is_long.reserve(lengths.size());
         for (const double length : lengths) is_long.push_back(length > kLongEdge * *middle ? 1 : 0);
         return is_long;
     }
