@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
@@ -59,11 +60,17 @@ void check_points(const PointSet& points) {
     if (points.size() == 1) refuse("only one point: a symmetry needs at least two");
 }
 
-/// The share of the diameter up to which chance does not drown what is meant: n scattered points have
-/// of the order of n^4 tau^2 chains of four points by chance; this keeps them of the order of n.
-double automatic_tolerance(int n, double resolution) {
+/// The share of the diameter up to which chance does not drown what is meant: m scattered points of one label
+/// have of the order of m^4 tau^2 chains of four points by chance; this keeps them all of the order of n.
+double automatic_tolerance(const PointSet& points, double resolution) {
     constexpr double kPaperTolerance = 0.05;
-    return std::clamp(std::pow(n, -1.5), std::min(10 * resolution, kPaperTolerance), kPaperTolerance);
+    const auto n = static_cast<double>(points.size());
+    std::map<int, double> sizes;
+    for (const int label : points.labels) sizes[label] += 1;
+    if (points.labels.empty()) sizes[0] = n;
+    double chains = 0;
+    for (const auto& [label, m] : sizes) chains += std::pow(m, 4);
+    return std::clamp(std::sqrt(n / chains), std::min(10 * resolution, kPaperTolerance), kPaperTolerance);
 }
 
 TypeSet cycle_types() {
@@ -137,8 +144,7 @@ DetectResult detect(const PointSet& points, const DetectOptions& options, const 
                         " points are too many: method paper keeps all distances, for at most " +
                         std::to_string(kMostPoints) + " points");
     const double share = options.max_tolerance ? *options.max_tolerance
-                                               : automatic_tolerance(static_cast<int>(result.points.size()),
-                                                                     options.resolution);
+                                               : automatic_tolerance(result.points, options.resolution);
     result.max_tolerance = share * result.diameter;
 
     RunMonitor monitor(context);

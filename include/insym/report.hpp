@@ -14,7 +14,7 @@ struct ReportContext {
     std::string path;                 ///< of the input
     std::string format;               ///< of the input
     std::optional<std::string> unit;  ///< of all lengths
-    std::string points = "points";    ///< what the points stand for: "points", "vertices"
+    std::string points = "points";    ///< what they stand for: "points", "representative", "edges,faces", ...
     double load_s = 0;                ///< time to read the input
 };
 

@@ -179,7 +179,8 @@ private:
     std::span<const double> a_;  // distances to the first point of the pair
     std::span<const double> b_;  // and to the second
 
-    // The later points with the first one's label, nearest to it first, and a directory of their distances.
+    // The later points, nearest to the first one, and a directory of their distances. They may have another
+    // label: each pair is of one label, a symmetry is not.
     std::vector<int> later_;
     std::vector<double> later_a_;
     std::vector<int> later_step_;
@@ -204,7 +205,7 @@ PairSearch::PairSearch(const Scene& scene, const PointGrid& grid, const Distance
       pair_{first, first},
       a_(scene.distances.row(first)) {
     for (const int q : scene.distances.nearest_first(first))
-        if (q > first && scene.label(q) == scene.label(first)) later_.push_back(q);
+        if (q > first) later_.push_back(q);
     for (const int q : later_) {
         later_a_.push_back(a_[index(q)]);
         later_step_.push_back(steps.step(a_[index(q)]));
@@ -258,7 +259,8 @@ void PairSearch::collect_matches() {
         for (; k < later_.size() && later_a_[k] <= b + cap; ++k) {
             const int image = later_[k];
             const double other_b = b_[index(image)];
-            if (later_a_[k] < b - cap || std::abs(a - other_b) > cap || image == q || image == pair_.second)
+            if (later_a_[k] < b - cap || std::abs(a - other_b) > cap || image == q || image == pair_.second ||
+                scene_.label(image) != scene_.label(q))
                 continue;
             const double lean = a - b, other_lean = later_a_[k] - other_b;
             if (lean > other_lean || (lean == other_lean && q > image)) continue;
