@@ -3,6 +3,9 @@ SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
 JOBS ?= $(shell nproc)
+# Clones of the project in different folders share what ccache keeps.
+export CCACHE_BASEDIR := $(CURDIR)
+export CCACHE_NOHASHDIR := true
 CMAKE_ARGS ?=  # more arguments for CMake, such as -DINSYM_WARNINGS_AS_ERRORS=OFF
 
 .PHONY: help
