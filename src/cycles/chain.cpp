@@ -53,35 +53,37 @@ namespace {
 constexpr std::size_t kShortSequence = 7;
 
 template <std::size_t kPoints, bool kClosed>
-ToleranceInterval interval_of(const double* const* rows, const int* points, double floor, double limit) {
+ToleranceInterval interval_of(const Distances& distances, const int* points, double floor, double limit) {
     constexpr std::size_t kOrbits = kClosed ? kPoints / 2 : kPoints - 1;
     Span spans[kOrbits];
 #pragma GCC unroll 8
-    for (std::size_t i = 0; i < kPoints; ++i)
+    for (std::size_t i = 0; i < kPoints; ++i) {
+        const double* row = distances.row(points[i]).data();
 #pragma GCC unroll 8
         for (std::size_t j = i + 1; j < kPoints; ++j) {
             const std::size_t step = kClosed ? std::min(j - i, kPoints - (j - i)) : j - i;
-            spans[step - 1].include(rows[i][points[j]]);
+            spans[step - 1].include(row[points[j]]);
         }
+    }
     return detail::interval_of_few<kOrbits>(spans, floor, limit);
 }
 
 template <bool kClosed>
-ToleranceInterval short_interval(const double* const* rows, std::span<const int> points, double floor,
+ToleranceInterval short_interval(const Distances& distances, std::span<const int> points, double floor,
                                  double limit) {
     switch (points.size()) {
         case 2:
-            return interval_of<2, kClosed>(rows, points.data(), floor, limit);
+            return interval_of<2, kClosed>(distances, points.data(), floor, limit);
         case 3:
-            return interval_of<3, kClosed>(rows, points.data(), floor, limit);
+            return interval_of<3, kClosed>(distances, points.data(), floor, limit);
         case 4:
-            return interval_of<4, kClosed>(rows, points.data(), floor, limit);
+            return interval_of<4, kClosed>(distances, points.data(), floor, limit);
         case 5:
-            return interval_of<5, kClosed>(rows, points.data(), floor, limit);
+            return interval_of<5, kClosed>(distances, points.data(), floor, limit);
         case 6:
-            return interval_of<6, kClosed>(rows, points.data(), floor, limit);
+            return interval_of<6, kClosed>(distances, points.data(), floor, limit);
         default:
-            return interval_of<kShortSequence, kClosed>(rows, points.data(), floor, limit);
+            return interval_of<kShortSequence, kClosed>(distances, points.data(), floor, limit);
     }
 }
 
@@ -104,10 +106,8 @@ double extended_tolerance(const Span* orbits, const double* d, const int* points
 
 ToleranceInterval ChainOracle::short_interval_of(std::span<const int> points, bool closed,
                                                  double limit) const {
-    const double* rows[kShortSequence];
-    for (std::size_t i = 0; i < points.size(); ++i) rows[i] = scene_.distances.row(points[i]).data();
-    return closed ? short_interval<true>(rows, points, scene_.resolution, limit)
-                  : short_interval<false>(rows, points, scene_.resolution, limit);
+    return closed ? short_interval<true>(scene_.distances, points, scene_.resolution, limit)
+                  : short_interval<false>(scene_.distances, points, scene_.resolution, limit);
 }
 
 // --- tolerance -----------------------------------------------------------------------------------

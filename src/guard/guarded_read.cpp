@@ -198,7 +198,7 @@ std::string memory_text(const ReadLimits& limits) {
 std::string death_of(int status, const ReadLimits& limits) {
     if (WIFEXITED(status) && WEXITSTATUS(status) == kOutOfMemory) return memory_text(limits);
     if (WIFSIGNALED(status))
-        return std::string("the reader crashed on it (") + strsignal(WTERMSIG(status)) +
+        return "the reader crashed on it (signal " + std::to_string(WTERMSIG(status)) +
                "); it is damaged or too large";
     return "the reader ended without a result; it is damaged or too large";
 }

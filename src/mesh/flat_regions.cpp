@@ -38,6 +38,7 @@ public:
         std::vector<int> order(mesh_.triangles.size());
         std::iota(order.begin(), order.end(), 0);
         std::vector<double> areas;
+        areas.reserve(order.size());
         for (const int t : order) areas.push_back(mesh_.area_vector(t).norm());
         std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
             return areas[static_cast<std::size_t>(a)] > areas[static_cast<std::size_t>(b)];

@@ -273,6 +273,7 @@ public:
                 ++sorts.try_emplace(label(i), Sort{i, 0}).first->second.count;
             }
         std::vector<Sort> order;
+        order.reserve(sorts.size());
         for (const auto& [label, sort] : sorts) order.push_back(sort);
         std::stable_sort(order.begin(), order.end(), [&](const Sort& a, const Sort& b) {
             return std::pair(noun_of(entity(a)).rank, b.count) < std::pair(noun_of(entity(b)).rank, a.count);
