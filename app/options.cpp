@@ -144,6 +144,12 @@ TypeSet parse_types(const std::string& text) {
     return types;
 }
 
+Method parse_method(const std::string& text) {
+    if (text == "robust") return Method::robust;
+    if (text == "paper") return Method::paper;
+    fail("unknown value '" + text + "' of --method" + hint_for(text, {"robust", "paper"}));
+}
+
 /// One of `known`, of which the first is there in this version and the others are announced.
 void check_choice(const std::string& option, const std::string& value,
                   const std::vector<std::string>& known) {
@@ -165,7 +171,7 @@ void declare(CLI::App& detect, Typed& typed) {
     };
     add("--json", typed.json, "FILE|-", "Write the full report; - is standard output");
     add("--html", typed.html, "FILE", "Not available yet");
-    add("--method", typed.method, "paper", "Definition of a symmetry");
+    add("--method", typed.method, "robust|paper", "Definition of a symmetry (default: paper)");
     add("--types", typed.types, "M,I,C2,...", "Kinds to look for, see below (default: all)");
     add("--points", typed.points, "vertices", "What represents a model");
     add("--max-tolerance", typed.max_tolerance, "F|auto",
@@ -228,7 +234,7 @@ void check_values(const CLI::App& detect) {
 Options checked(const Typed& typed) {
     Options options;
     if (!typed.html.empty()) fail("--html is not available yet in this version; use --json for a report");
-    check_choice("--method", typed.method, {"paper", "robust"});
+    options.detect.method = parse_method(typed.method);
     check_choice("--points", typed.points, {"vertices", "representative", "edges", "faces"});
     options.input = typed.input;
     options.json = typed.json == "/dev/stdout" ? "-" : typed.json;

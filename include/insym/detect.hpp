@@ -16,7 +16,8 @@ namespace insym {
 
 /// Which definition of a symmetry is used (definitions, sections 4 to 6).
 enum class Method {
-    paper,  ///< cycles and clusters of consistent cycles, as in Li, Langbein and Martin 2007
+    robust,  ///< an isometry is judged by all the points it carries, against chance (section 8)
+    paper,   ///< cycles and clusters of consistent cycles, as in Li, Langbein and Martin 2007
 };
 
 /// What to look for. The defaults suit exact and slightly noisy models.

@@ -26,7 +26,7 @@ std::string_view word(RunStatus status) {
 }
 
 std::string_view word(Method method) {
-    constexpr std::array<std::string_view, 1> words = {"paper"};
+    constexpr std::array<std::string_view, 2> words = {"robust", "paper"};
     return words[static_cast<std::size_t>(method)];
 }
 
