@@ -116,34 +116,52 @@ private:
         // One more point of the ring, at either end or one step beyond; a triangle is whole as it is.
         constexpr double kThird = 2.0943951023931953;
         const bool triangle = std::abs(std::abs(angle) - kThird) * radius <= three_;
+        double fourth = std::abs(std::abs(angle) - kThird) * radius;
         if (!triangle) {
             const int label = cloud_.label(group_.front());
             double ignored = 0;
             const Vector3d next = map(at(c));
             const Vector3d before = map.linear.transpose() * (at(a) - map.shift);
             const double near = std::max(3 * three_, reach_ / 2);
-            if (cloud_.nearest(next, label, near, ignored) < 0 && cloud_.nearest(before, label, near, ignored) < 0 &&
-                cloud_.nearest(map(next), label, near, ignored) < 0)
-                return;
+            double square = near * near;
+            bool more = false;
+            for (const Vector3d& place : {next, before, map(next)})
+                if (cloud_.nearest(place, label, std::sqrt(square), ignored) >= 0) {
+                    square = std::min(square, ignored);
+                    more = true;
+                }
+            if (!more) return;
+            fourth = std::sqrt(square);
         }
         Hypothesis h;
         h.type = SymmetryType::rotation;
         h.map = map;
-        add(h, {a, b, c}, std::abs(distances_(a, b) - distances_(b, c)));
+        const double off = std::max(std::abs(distances_(a, b) - distances_(b, c)), floor());
+        const auto n = static_cast<double>(group_.size());
+        const double beyond = std::max(fourth, floor()) / cloud_.scene().diameter;
+        // As many rings as good are there by chance.
+        add(h, {a, b, c}, off, 4 * n * n * n * off / cloud_.scene().diameter * (triangle ? beyond : 20 * n * beyond * beyond * beyond));
     }
 
+    double floor() const { return cloud_.scene().resolution; }
+
     void four(int a, int b, int c, int d) {
+        const double off =
+            std::max({std::abs(distances_(a, b) - distances_(b, c)), std::abs(distances_(b, c) - distances_(c, d)),
+                      std::abs(distances_(a, c) - distances_(b, d)), floor()});
+        const double chance = std::pow(static_cast<double>(group_.size()), 4) * 27 * std::pow(off / cloud_.scene().diameter, 3);
         for (const bool improper : {false, true}) {
             Hypothesis h;
             h.type = improper ? SymmetryType::rotation_reflection : SymmetryType::screw;
             if (cloud_.dimension() == 2) h.type = improper ? SymmetryType::glide_reflection : SymmetryType::rotation;
             h.map = carry({at(a), at(b), at(c)}, {at(b), at(c), at(d)}, improper);
             if (cloud_.dimension() == 2 && (h.map.linear(2, 2) < 0)) continue;
-            add(h, {a, b, c, d}, std::abs(distances_(a, b) - distances_(c, d)));
+            add(h, {a, b, c, d}, off, chance);
         }
     }
 
-    void add(Hypothesis& h, std::initializer_list<int> chain, double /*off*/) {
+    /// The least of a chance first, and short steps before long ones.
+    void add(Hypothesis& h, std::initializer_list<int> chain, double off, double chance) {
         const auto count = static_cast<double>(chain.size());
         for (const int i : chain) h.center += at(i) / count;
         for (const int i : chain) h.radius = std::max(h.radius, (at(i) - h.center).norm());
@@ -152,7 +170,8 @@ private:
             h.from[k] = group_[static_cast<std::size_t>(*it)];
             h.to[k] = group_[static_cast<std::size_t>(*(it + 1))];
         }
-        found_.push_back({h.radius, h});
+        h.off = off;
+        found_.push_back({chance * (1 + 0.1 * h.radius / cloud_.radius()), h});
     }
 
     const Cloud& cloud_;
@@ -177,12 +196,15 @@ public:
     std::vector<Hypothesis> run(std::size_t most) {
         const int n = static_cast<int>(group_.size());
         const int picks = std::max(4, std::min(n, static_cast<int>(4e6 / n / n)));
-        for (int a = 0; a < n && found_.size() < most; ++a)
+        for (int a = 0; a < n && found_.size() < 50 * most; ++a)
             for (int mate = a + 1; mate < n; ++mate)
                 for (int k = 0; k < picks; ++k) {
                     const int b = picks == n ? k : static_cast<int>((static_cast<long>(k) * n + a * 7 + mate) / picks) % n;
                     if (b != a && b != mate) partner(a, mate, b);
                 }
+        std::stable_sort(found_.begin(), found_.end(),
+                         [](const Hypothesis& x, const Hypothesis& y) { return x.off < y.off; });
+        if (found_.size() > most) found_.resize(most);
         return std::move(found_);
     }
 
@@ -214,6 +236,8 @@ private:
         h.map.shift = h.center - h.map.linear * h.center;
         h.radius = std::max({u.norm(), v.norm(), along.norm() / 2});
         const auto id = [&](int i) { return group_[static_cast<std::size_t>(i)]; };
+        h.off = std::max(std::abs(distances_(a, b) - distances_(mate, other)),
+                         std::abs(distances_(a, other) - distances_(mate, b)));
         h.from = {id(a), id(b), -1, -1};
         h.to = {id(mate), id(other), -1, -1};
         found_.push_back(h);
@@ -286,6 +310,7 @@ std::vector<Hypothesis> frames(const Cloud& cloud, const Vector3d& center, doubl
                 if (cloud.dimension() == 2 && h.map.linear(2, 2) < 0) continue;
                 h.map.shift = center - h.map.linear * center;
                 h.center = center;
+                h.off = reach;
                 out.push_back(h);
                 if (out.size() >= most) return out;
             }

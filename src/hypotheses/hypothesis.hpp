@@ -14,6 +14,7 @@ struct Hypothesis {
     RigidMap map;
     Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the points that suggest it
     double radius = 0;                                 ///< how far these are from there
+    double off = 0;                                    ///< how far the points are from agreeing
     std::array<int, 4> from{{-1, -1, -1, -1}};         ///< the links that suggest it
     std::array<int, 4> to{{-1, -1, -1, -1}};
 };

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <unordered_map>
 
 #include "hypotheses/generators.hpp"
 
@@ -78,9 +77,42 @@ std::vector<std::pair<int, int>> pairs_of(const Cloud& cloud, std::size_t most) 
     return pairs;
 }
 
-struct Cell {
-    int count = 0;
-    std::size_t first = 0;
+/// Votes by cell: a hash table with open addresses, as there are many cells and most hold one vote.
+class Cells {
+public:
+    explicit Cells(std::size_t most) {
+        std::size_t size = 16;
+        while (size < 2 * most) size *= 2;
+        mask_ = size - 1;
+        slots_.resize(size);
+    }
+
+    struct Slot {
+        std::uint64_t key = 0;
+        int count = 0;
+        int first = 0;  // of the ballots
+    };
+
+    void add(std::uint64_t key, int ballot) {
+        Slot& s = slots_[place(key)];
+        if (s.count++ == 0) {
+            s.key = key;
+            s.first = ballot;
+        }
+    }
+    /// An empty slot where there are no votes.
+    const Slot& at(std::uint64_t key) const { return slots_[place(key)]; }
+    const std::vector<Slot>& slots() const { return slots_; }
+
+private:
+    std::size_t place(std::uint64_t key) const {
+        std::size_t k = key & mask_;
+        while (slots_[k].count > 0 && slots_[k].key != key) k = (k + 1) & mask_;
+        return k;
+    }
+
+    std::size_t mask_ = 0;
+    std::vector<Slot> slots_;
 };
 
 }  // namespace
@@ -104,28 +136,31 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, double reach
     };
     std::vector<Hypothesis> out;
     for (const double size : sizes) {
-        std::unordered_map<std::uint64_t, Cell> cells;
-        cells.reserve(ballots.size());
-        const auto at = [&](const Vector3d& p, int k) { return static_cast<std::int64_t>(std::floor(p[k] / size)); };
+        Cells cells(ballots.size());
+        const auto at = [&](const Vector3d& p, int k) { return p[k] / size; };
+        const auto whole = [&](const Vector3d& p, int k) { return static_cast<std::int64_t>(std::floor(at(p, k))); };
         for (std::size_t b = 0; b < ballots.size(); ++b) {
             const Vector3d& p = ballots[b].place;
-            Cell& cell = cells[key_of(at(p, 0), at(p, 1), at(p, 2))];
-            if (cell.count++ == 0) cell.first = b;
+            cells.add(key_of(whole(p, 0), whole(p, 1), whole(p, 2)), static_cast<int>(b));
         }
-        // A vote counts for the cell it is in and for those whose border it is next to.
+        // A cell is joined with the seven whose borders its first vote is nearest to.
         std::vector<Ranked> ranked;
-        for (const auto& [key, cell] : cells) {
-            const Vector3d& p = ballots[cell.first].place;
+        for (const Cells::Slot& cell : cells.slots()) {
+            if (cell.count == 0) continue;
+            const Vector3d& p = ballots[static_cast<std::size_t>(cell.first)].place;
+            std::int64_t home[3], beside[3];
+            for (int k = 0; k < 3; ++k) {
+                home[k] = whole(p, k);
+                beside[k] = home[k] + (at(p, k) - static_cast<double>(home[k]) < 0.5 ? -1 : 1);
+            }
             int votes = 0, fullest = 0;
-            for (std::int64_t x = -1; x <= 1; ++x)
-                for (std::int64_t y = -1; y <= 1; ++y)
-                    for (std::int64_t z = -1; z <= 1; ++z) {
-                        const auto near = cells.find(key_of(at(p, 0) + x, at(p, 1) + y, at(p, 2) + z));
-                        if (near == cells.end()) continue;
-                        votes += near->second.count;
-                        fullest = std::max(fullest, near->second.count);
-                    }
-            if (votes >= 3 && cell.count == fullest) ranked.push_back({votes, cell.first});
+            for (int corner = 0; corner < 8; ++corner) {
+                const auto pick = [&](int k) { return (corner >> k & 1) == 0 ? home[k] : beside[k]; };
+                const Cells::Slot& near = cells.at(key_of(pick(0), pick(1), pick(2)));
+                votes += near.count;
+                fullest = std::max(fullest, near.count);
+            }
+            if (votes >= 3 && cell.count == fullest) ranked.push_back({votes, static_cast<std::size_t>(cell.first)});
         }
         std::sort(ranked.begin(), ranked.end());
         if (ranked.size() > most) ranked.resize(most);
@@ -136,6 +171,7 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, double reach
             h.map = map_of(type, cloud[b.from], cloud[b.to], cloud.dimension());
             h.center = (cloud[b.from] + cloud[b.to]) / 2;
             h.radius = (cloud[b.from] - cloud[b.to]).norm() / 2;
+            h.off = size / 4;
             h.from[0] = b.from;
             h.to[0] = b.to;
             out.push_back(h);

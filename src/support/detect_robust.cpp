@@ -44,23 +44,22 @@ public:
     RobustResult run(TypeSet types) {
         const double reach = gatherer_.reach();
         const std::size_t n = scene_.points.size();
-        const std::size_t most = std::max<std::size_t>(200, 300000 / n);
+        // So many looks at a point for each source of hypotheses.
+        const auto budget = [&](double looks) { return static_cast<std::size_t>(100 + looks / static_cast<double>(n)); };
         monitor_.begin_stage("hypotheses", 6);
-        offer(frames(cloud_, Vector3d::Zero(), reach, most));
+        offer(frames(cloud_, Vector3d::Zero(), reach, budget(1e5)));
         constexpr std::size_t kPairs = 300000;
         for (const SymmetryType type :
              {SymmetryType::translation, SymmetryType::mirror, SymmetryType::inversion}) {
-            if (type == SymmetryType::inversion && cloud_.dimension() == 2)
-                offer(vote(cloud_, SymmetryType::half_turn, reach, kPairs, most / 5));
-            else
-                offer(vote(cloud_, type, reach, kPairs, most / 5));
+            const bool central = type == SymmetryType::inversion && cloud_.dimension() == 2;
+            offer(vote(cloud_, central ? SymmetryType::half_turn : type, reach, kPairs, budget(2e4)), budget(6e4));
             monitor_.advance();
         }
         constexpr std::size_t kGroup = 400;
         for (const PointGroup& group : point_groups(cloud_, kGroup)) {
             if (monitor_.should_stop()) break;
-            offer(chains(cloud_, group, reach, 20 * most));
-            offer(half_turns(cloud_, group, reach, 10 * most));
+            offer(chains(cloud_, group, reach, 100000), budget(3e5));
+            offer(half_turns(cloud_, group, reach, 20000), budget(1e5));
         }
         monitor_.advance();
         offer_roots();
@@ -75,11 +74,12 @@ public:
 private:
     /// Tries hypotheses in their order, in blocks, so that what one finds spares the next ones the work; the
     /// blocks do not depend on the threads.
-    void offer(const std::vector<Hypothesis>& hypotheses) {
+    void offer(const std::vector<Hypothesis>& hypotheses, std::size_t most = 1000000) {
         constexpr std::size_t kBlock = 64;
+        const std::size_t stop = tried_ + most;
         std::vector<std::optional<Support>> found(kBlock);
         std::vector<const Hypothesis*> block;
-        for (std::size_t k = 0; k < hypotheses.size() && !monitor_.should_stop();) {
+        for (std::size_t k = 0; k < hypotheses.size() && tried_ < stop && !monitor_.should_stop();) {
             block.clear();
             for (; k < hypotheses.size() && block.size() < kBlock; ++k)
                 if (!collection_.explains(hypotheses[k])) block.push_back(&hypotheses[k]);

@@ -213,14 +213,14 @@ RigidMap Gatherer::refit(SymmetryType type, const Linked& linked, double toleran
 }
 
 /// A hypothesis from near points is inaccurate far away: refit it on twice as far a neighbourhood at a time.
-bool Gatherer::grow(const Hypothesis& h, RigidMap& map) const {
+bool Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map) const {
     if (!(h.radius > 0) || h.type == SymmetryType::translation || h.type == SymmetryType::inversion) return true;
     Linked linked;
     const double far = cloud_.radius() + h.center.norm();
     for (double radius = 2 * h.radius; radius < far; radius *= 2) {
-        link(h.type, map, reach(), &h.center, radius, linked);
+        link(h.type, map, reach, &h.center, radius, linked);
         if (linked.count < least_links(h.type)) continue;
-        const Judged judged = judge(h.type, linked, reach());
+        const Judged judged = judge(h.type, linked, reach);
         map = refit(h.type, linked, judged.tolerance, map);
     }
     return true;
@@ -261,10 +261,17 @@ std::optional<Support> Gatherer::settle(SymmetryType type, RigidMap map, double 
 }
 
 std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double worst) const {
+    // What its points agree on so well is not looked for much farther off.
+    constexpr double kLever = 12;
+    const double near = std::clamp(kLever * hypothesis.off, 8 * cloud_.scene().resolution, reach());
     RigidMap map = hypothesis.map;
-    if (!grow(hypothesis, map)) return std::nullopt;
-    std::optional<Support> best = settle(hypothesis.type, map, reach(), worst + 3);
+    if (!grow(hypothesis, near, map)) return std::nullopt;
+    std::optional<Support> best = settle(hypothesis.type, map, near, worst + 3);
     if (!best) return std::nullopt;
+    if (near < reach()) {
+        const auto wider = settle(best->type, best->map, reach(), worst + 3);
+        if (wider && wider->significance < best->significance) best = wider;
+    }
     Vector3d center = Vector3d::Zero();
     for (const auto& [from, to] : best->links) center += cloud_[from] / static_cast<double>(best->links.size());
     double radius = 0;

@@ -43,7 +43,7 @@ private:
     Judged judge(SymmetryType type, const Linked& linked, double reach) const;
     RigidMap refit(SymmetryType type, const Linked& linked, double tolerance, const RigidMap& old) const;
     std::optional<Support> settle(SymmetryType type, RigidMap map, double reach, double worst) const;
-    bool grow(const Hypothesis& hypothesis, RigidMap& map) const;
+    bool grow(const Hypothesis& hypothesis, double reach, RigidMap& map) const;
 
     const Cloud& cloud_;
     const Significance& significance_;
