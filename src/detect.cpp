@@ -10,6 +10,7 @@
 #include "parallel_for.hpp"
 #include "points/diameter.hpp"
 #include "points/merge.hpp"
+#include "ranking/implied.hpp"
 #include "ranking/measure.hpp"
 #include "ranking/rank.hpp"
 #include "run_monitor.hpp"
@@ -120,7 +121,9 @@ void run_robust(const PointScene& scene, const DetectOptions& options, RunMonito
     result.max_tolerance = found.max_tolerance;
     const Measure measure(scene, significance);
     parallel_for(result.symmetries.size(), [&](std::size_t i) { measure.complete(result.symmetries[i]); });
+    promote_generators(scene, result.symmetries);
     rank(result.symmetries);
+    mark_implied(scene, result.symmetries);
     result.timing.symmetries_s = seconds_since(start);
     result.stats = {found.hypotheses, 0, result.symmetries.size()};
 }
