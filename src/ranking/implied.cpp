@@ -6,6 +6,7 @@
 
 #include "isometry/fit.hpp"
 #include "parallel_for.hpp"
+#include "points/point_grid.hpp"
 
 namespace insym {
 namespace {
@@ -46,7 +47,12 @@ public:
     Implications(const PointScene& scene, const std::vector<Symmetry>& symmetries) : symmetries_(symmetries) {
         const auto n = static_cast<double>(scene.size());
         for (int i = 0; i < scene.size(); ++i) middle_ += to_vector(scene.position(i)) / n;
-        for (int i = 0; i < scene.size(); ++i) places_.push_back(to_vector(scene.position(i)) - middle_);
+        std::vector<Point> positions;
+        for (int i = 0; i < scene.size(); ++i) {
+            places_.push_back(to_vector(scene.position(i)) - middle_);
+            positions.push_back(to_point(places_.back()));
+        }
+        grid_ = PointGrid(positions);
         items_.resize(symmetries.size());
         parallel_for(symmetries.size(), [&](std::size_t k) { items_[k] = item(scene, symmetries[k]); });
     }
@@ -103,12 +109,33 @@ private:
             }
         for (const int p : s.fixed_points) out.carried[static_cast<std::size_t>(p)] = 1;
         out.slack = std::max({s.deviation.max, scene.resolution});
+        if (!is_pair_type(s.type) && s.significance < 0) carry_beyond_gaps(s, out);
         return out;
+    }
+
+    /// Points that lie on an orbit with gaps between them and its runs are carried as well.
+    void carry_beyond_gaps(const Symmetry& s, Item& out) const {
+        constexpr int kSteps = 12;
+        const RigidMap back = inverse(out.map);
+        for (const Orbit& o : s.cycles) {
+            if (o.closed) continue;
+            for (const bool forward : {true, false}) {
+                Vector3d place = places_[static_cast<std::size_t>(forward ? o.points.back() : o.points.front())];
+                for (int k = 0; k < kSteps; ++k) {
+                    place = forward ? out.map(place) : back(place);
+                    grid_.visit_ball(to_point(place), 2 * out.slack, [&](int p, double) {
+                        out.carried[static_cast<std::size_t>(p)] = 1;
+                        return true;
+                    });
+                }
+            }
+        }
     }
 
     const std::vector<Symmetry>& symmetries_;
     Vector3d middle_ = Vector3d::Zero();
     std::vector<Vector3d> places_;
+    PointGrid grid_{{}};
     std::vector<Item> items_;
 };
 
@@ -121,28 +148,35 @@ double slack_of(const Item& a, const Item& b, const Item& c) {
 
 void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetries) {
     const Implications all(scene, symmetries);
-    std::vector<double> significance;
-    for (const Symmetry& s : symmetries) significance.push_back(s.significance);
-    for (std::size_t g = 0; g < symmetries.size(); ++g) {
-        const Symmetry& s = symmetries[g];
-        if (is_pair_type(s.type) || s.significance > 0) continue;
+    // The largest turns and steps first, so that the smallest has the last word.
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < symmetries.size(); ++k)
+        if (!is_pair_type(symmetries[k].type) && symmetries[k].significance < 0) order.push_back(k);
+    const auto motion = [&](std::size_t k) {
+        const Isometry& f = symmetries[k].isometry;
+        return std::pair(std::round(f.angle_deg * 1e3), f.step);
+    };
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return motion(a) > motion(b); });
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const std::size_t g = order[i];
         std::vector<RigidMap> powers = all.powers(g, kMostPowers);
         powers.erase(powers.begin(), powers.begin() + 2);
+        double best = symmetries[g].significance;
         for (std::size_t k = 0; k < symmetries.size(); ++k) {
-            if (k == g || symmetries[k].significance >= significance[g] || is_pair_type(symmetries[k].type)) continue;
-            // The generator has the smaller turn and step.
-            if (symmetries[k].isometry.angle_deg + 1e-6 < s.isometry.angle_deg) continue;
-            if (s.type == symmetries[k].type && s.isometry.angle_deg == 0 &&
-                symmetries[k].isometry.step < s.isometry.step)
+            // A half-turn, a mirror or an inversion can be a power as well.
+            if (k == g || symmetries[k].significance >= best || (!is_pair_type(symmetries[k].type) && motion(k) < motion(g)))
                 continue;
             if (!all.carries(all[g], all[k])) continue;
-            const double slack = slack_of(all[k], all[g], all[g]);
-            if (std::any_of(powers.begin(), powers.end(),
-                            [&](const RigidMap& m) { return all.equal(all[k], m, slack); }))
-                significance[g] = symmetries[k].significance * (1 + 1e-9);
+            double slack = 2 * all[k].slack;
+            for (std::size_t j = 0; j < powers.size(); ++j) {
+                slack = 2 * all[k].slack + (2 + 0.5 * static_cast<double>(j / 2)) * all[g].slack;
+                if (!all.equal(all[k], powers[j], slack)) continue;
+                best = symmetries[k].significance * (1 + 1e-9);
+                break;
+            }
         }
+        symmetries[g].significance = best;
     }
-    for (std::size_t k = 0; k < symmetries.size(); ++k) symmetries[k].significance = significance[k];
 }
 
 void mark_implied(const PointScene& scene, std::vector<Symmetry>& symmetries) {
@@ -158,8 +192,9 @@ void mark_implied(const PointScene& scene, std::vector<Symmetry>& symmetries) {
             if (all.carries(all[generators[g]], a)) able.push_back(g);
         const auto found = [&]() -> std::vector<std::size_t> {
             for (const std::size_t g : able)
-                for (const RigidMap& m : powers[g])
-                    if (all.equal(a, m, slack_of(a, all[generators[g]], all[generators[g]]))) return {g};
+                for (std::size_t j = 0; j < powers[g].size(); ++j)
+                    if (all.equal(a, powers[g][j], 2 * a.slack + (2 + 0.5 * static_cast<double>(j / 2)) * all[generators[g]].slack))
+                        return {g};
             for (const std::size_t g : able)
                 for (const std::size_t h : able) {
                     if (g == h) continue;

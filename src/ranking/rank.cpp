@@ -26,8 +26,8 @@ void rank(std::vector<Symmetry>& symmetries) {
         if (m != n) return m > n;
         if (a.type != b.type) return a.type < b.type;
         // Of the generators of one ring or row, the smallest turn or step.
-        if (std::abs(a.isometry.angle_deg - b.isometry.angle_deg) > 1e-3)
-            return a.isometry.angle_deg < b.isometry.angle_deg;
+        const double x = std::round(a.isometry.angle_deg * 1e3), y = std::round(b.isometry.angle_deg * 1e3);
+        if (x != y) return x < y;
         return cycles_before(a, b);
     });
     int id = 0;

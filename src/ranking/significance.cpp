@@ -43,7 +43,7 @@ Significance::Significance(const PointScene& scene)
 
 double Significance::log10_false_alarms(SymmetryType type, const Evidence& evidence, double tolerance) const {
     constexpr double kKinds = 8;
-    constexpr double kTolerances = 20;  // powers of two between the resolution and the diameter
+    constexpr double kTolerances = 36;  // powers of the root of two between the resolution and the diameter
     const double reach = std::max(tolerance, resolution_);
     const double p = background_.chance(reach);
 

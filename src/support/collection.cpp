@@ -55,14 +55,17 @@ int Collection::same(const Support& support) const {
     seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
     for (const int id : seen) {
         const Support& other = supports_[static_cast<std::size_t>(id)];
+        // The links of one, or nearly so, among those of the other of the same kind: a part of it.
         const auto larger = std::max(size, static_cast<double>(other.links.size()));
-        if (std::min(size, static_cast<double>(other.links.size())) < kShare * larger) continue;
+        const double smaller = std::min(size, static_cast<double>(other.links.size()));
+        const double needed = kShare * (other.type == support.type ? smaller : larger);
+        if (smaller < needed) continue;
         int forward = 0, backward = 0;
         for (const auto& [from, to] : support.links) {
             forward += has_link(other, from, to) ? 1 : 0;
             backward += has_link(other, to, from) ? 1 : 0;
         }
-        if (std::max(forward, backward) >= kShare * larger) return id;
+        if (std::max(forward, backward) >= needed) return id;
     }
     return -1;
 }

@@ -116,21 +116,24 @@ private:
         }
         if (s.type != SymmetryType::rotation && !improper) return;
         const Motion motion = motion_of(s.map, improper);
-        double far = 0;
-        for (const auto& [from, to] : s.links) far = std::max(far, (cloud_[to] - cloud_[from]).norm());
-        const double slack = s.tolerance / std::max(far, s.tolerance);
-        const WholeOrder whole = whole_order(motion.angle, slack);
-        if (whole.order < 2) return;
+        const double slack = 2 * angle_slack(cloud_, s, motion);
         const Eigen::Matrix3d a = Eigen::Matrix3d::Identity() - s.map.linear;
         const Vector3d fixed = a.completeOrthogonalDecomposition().solve(s.map.shift);
-        for (int multiple = 1; multiple <= 4; ++multiple) {
-            const int order = whole.order * multiple;
-            if (multiple == 1 && whole.turns == 1) continue;
+        const auto offer_order = [&](int order) {
             RigidMap map;
             map.linear = Eigen::AngleAxisd(2 * std::numbers::pi / order, motion.axis).toRotationMatrix();
             if (improper) map.linear -= 2 * (map.linear * motion.axis) * motion.axis.transpose();
             map.shift = fixed - map.linear * fixed;
             out.push_back(of_map(s.type, map));
+        };
+        constexpr int kMostOrder = 200, kMostTries = 8;
+        int tries = 0;
+        const double turns = motion.angle / (2 * std::numbers::pi);
+        for (int order = 3; order <= kMostOrder && tries < kMostTries; ++order) {
+            const double whole = std::round(order * turns);
+            if (whole < 1 || std::abs(turns - whole / order) * 2 * std::numbers::pi > slack) continue;
+            ++tries;
+            offer_order(order);
         }
     }
 

@@ -16,20 +16,6 @@ namespace {
 constexpr int kMostSteps = 12;   // from one run to the next
 constexpr int kMostOrder = 200;
 
-double angle_slack(const Cloud& cloud, const Support& s, const Motion& motion) {
-    double sum = 0;
-    Vector3d middle = Vector3d::Zero();
-    for (const auto& [from, to] : s.links) middle += cloud[from] / static_cast<double>(s.links.size());
-    // Distance from the axis: for a turn by an angle, the chord says it.
-    const double sine = 2 * std::sin(motion.angle / 2);
-    for (const auto& [from, to] : s.links) {
-        Vector3d chord = s.map(cloud[from]) - cloud[from];
-        chord -= motion.axis * motion.axis.dot(chord);
-        sum += chord.squaredNorm() / (sine * sine);
-    }
-    return sum > 0 ? 1.5 * s.tolerance / std::sqrt(sum) : 1.0;
-}
-
 class Tracer {
 public:
     Tracer(const Cloud& cloud, const Significance& significance, const Support& support)
@@ -222,6 +208,20 @@ private:
 };
 
 }  // namespace
+
+double angle_slack(const Cloud& cloud, const Support& s, const Motion& motion) {
+    double sum = 0;
+    Vector3d middle = Vector3d::Zero();
+    for (const auto& [from, to] : s.links) middle += cloud[from] / static_cast<double>(s.links.size());
+    // Distance from the axis: for a turn by an angle, the chord says it.
+    const double sine = 2 * std::sin(motion.angle / 2);
+    for (const auto& [from, to] : s.links) {
+        Vector3d chord = s.map(cloud[from]) - cloud[from];
+        chord -= motion.axis * motion.axis.dot(chord);
+        sum += chord.squaredNorm() / (sine * sine);
+    }
+    return sum > 0 ? 1.5 * s.tolerance / std::sqrt(sum) : 1.0;
+}
 
 WholeOrder whole_order(double angle, double slack) {
     const double turns = angle / (2 * std::numbers::pi);

@@ -28,4 +28,7 @@ struct WholeOrder {
 };
 WholeOrder whole_order(double angle, double slack);
 
+/// How well the links of a turn say its angle, in radians.
+double angle_slack(const Cloud& cloud, const Support& support, const Motion& motion);
+
 }  // namespace insym

@@ -21,11 +21,15 @@ struct Gatherer::Linked {
 
 struct Gatherer::Judged {
     double significance = 1e9;
-    double tolerance = 0;
+    double tolerance = 0;  // where it is most significant
     int hits = 0;
+    double wide = 0;  // the tail of the noise included
 };
 
 namespace {
+
+/// So much of the significance may go for more links.
+constexpr double kTail = 0.8;
 
 bool improper_kind(SymmetryType type) {
     return type == SymmetryType::mirror || type == SymmetryType::inversion ||
@@ -116,7 +120,7 @@ std::vector<std::pair<SymmetryType, RigidMap>> simpler_kinds(SymmetryType type, 
 
 Gatherer::Gatherer(const Cloud& cloud, const Significance& significance, double reach)
     : cloud_(cloud), significance_(significance) {
-    for (double level = cloud.scene().resolution; level < reach * (1 - 1e-9); level *= 2) levels_.push_back(level);
+    for (double level = cloud.scene().resolution; level < reach * (1 - 1e-9); level *= std::numbers::sqrt2) levels_.push_back(level);
     levels_.push_back(std::max(reach, cloud.scene().resolution));
 }
 
@@ -187,13 +191,21 @@ Gatherer::Judged Gatherer::judge(SymmetryType type, const Linked& linked, double
         if (k == i) --hits[level_of(worst)];
     }
     Judged best;
+    std::vector<Judged> all;
     int sum = 0;
     for (std::size_t l = 0; l < levels_.size() && levels_[l] <= reach * (1 + 1e-9); ++l) {
         sum += hits[l];
         if (sum == 0 || (l > 0 && hits[l] == 0)) continue;
         const double s = significance_.log10_false_alarms(type, {sum, 0, 0}, levels_[l]);
-        if (s < best.significance) best = {s, levels_[l], sum};
+        all.push_back({s, levels_[l], sum});
+        if (s < best.significance) best = all.back();
     }
+    // The best level cuts off the tail of the noise: links that cost little belong to it as well.
+    Judged wide = best;
+    for (const Judged& j : all)
+        if (j.tolerance > best.tolerance && j.hits > wide.hits && j.significance <= kTail * best.significance) wide = j;
+    best.hits = wide.hits;
+    best.wide = wide.tolerance;
     return best;
 }
 
@@ -238,11 +250,11 @@ std::optional<Support> Gatherer::settle(SymmetryType type, RigidMap map, double 
         if (judged.significance < best.significance) {
             best.type = type;
             best.map = map;
-            best.tolerance = judged.tolerance;
+            best.tolerance = judged.wide;
             best.significance = judged.significance;
             best.hits = judged.hits;
             best.links.clear();
-            const double limit = judged.tolerance * judged.tolerance * (1 + 1e-9);
+            const double limit = judged.wide * judged.wide * (1 + 1e-9);
             for (std::size_t i = 0; i < linked.next.size(); ++i)
                 if (linked.next[i] >= 0 && linked.square[i] <= limit)
                     best.links.emplace_back(static_cast<int>(i), linked.next[i]);
@@ -250,7 +262,7 @@ std::optional<Support> Gatherer::settle(SymmetryType type, RigidMap map, double 
         // What chance alone would do is not worth another look.
         if (judged.significance > worst + 4 || linked.next == last) break;
         last = linked.next;
-        const RigidMap better = refit(type, linked, judged.tolerance, map);
+        const RigidMap better = refit(type, linked, judged.wide, map);
         if ((better.linear - map.linear).norm() * cloud_.radius() + (better.shift - map.shift).norm() <
             1e-3 * cloud_.scene().resolution)
             break;
