@@ -164,7 +164,7 @@ void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetri
         double best = symmetries[g].significance;
         for (std::size_t k = 0; k < symmetries.size(); ++k) {
             // A half-turn, a mirror or an inversion can be a power as well.
-            if (k == g || symmetries[k].significance >= best || (!is_pair_type(symmetries[k].type) && motion(k) < motion(g)))
+            if (k == g || symmetries[k].significance > best || (!is_pair_type(symmetries[k].type) && motion(k) < motion(g)))
                 continue;
             if (!all.carries(all[g], all[k])) continue;
             double slack = 2 * all[k].slack;

@@ -85,7 +85,7 @@ bool Collection::add(Support support) {
         return true;
     }
     Support& kept = supports_[static_cast<std::size_t>(id)];
-    if (kept.significance <= support.significance) return false;
+    if (worth(kept, 3) <= worth(support, 3)) return false;
     kept = std::move(support);
     enter(id);
     return true;

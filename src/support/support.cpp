@@ -52,6 +52,10 @@ int least_links(SymmetryType type) {
 
 }  // namespace
 
+double worth(const Support& support, int dimension) {
+    return support.significance * (1 - 0.05 * degrees_of_freedom(support.type, dimension));
+}
+
 Motion motion_of(const RigidMap& map, bool improper) {
     Motion m;
     Matrix3d turn = map.linear;
@@ -291,7 +295,7 @@ std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double wor
     for (const auto& [type, plain] :
          simpler_kinds(best->type, best->map, center, radius, 4 * best->tolerance, cloud_.dimension())) {
         const auto other = settle(type, plain, reach(), worst);
-        if (other && other->significance <= best->significance) best = other;
+        if (other && worth(*other, cloud_.dimension()) <= worth(*best, cloud_.dimension())) best = other;
     }
     if (best->significance > worst) return std::nullopt;
     return best;

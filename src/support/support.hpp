@@ -22,6 +22,10 @@ struct Support {
     double significance = 0;
 };
 
+/// Of two kinds that say the same links the simpler one is meant, unless it is clearly less significant: the
+/// freedom of the other always fits a little better. Lower is better.
+double worth(const Support& support, int dimension);
+
 /// Gathers and judges. Immutable, thread-safe.
 class Gatherer {
 public:
