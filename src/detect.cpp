@@ -12,6 +12,7 @@
 #include "points/merge.hpp"
 #include "ranking/implied.hpp"
 #include "ranking/measure.hpp"
+#include "ranking/point_group.hpp"
 #include "ranking/rank.hpp"
 #include "run_monitor.hpp"
 #include "scene.hpp"
@@ -124,6 +125,7 @@ void run_robust(const PointScene& scene, const DetectOptions& options, RunMonito
     promote_generators(scene, result.symmetries);
     rank(result.symmetries);
     mark_implied(scene, result.symmetries);
+    result.group = point_group(scene, result.symmetries);
     result.timing.symmetries_s = seconds_since(start);
     result.stats = {found.hypotheses, 0, result.symmetries.size()};
 }

@@ -27,7 +27,7 @@ RigidMap carry(const std::array<Vector3d, 3>& from, const std::array<Vector3d, 3
 
 namespace {
 
-std::vector<Point> positions(const Cloud& cloud, const PointGroup& group) {
+std::vector<Point> positions(const Cloud& cloud, const SearchGroup& group) {
     std::vector<Point> out;
     out.reserve(group.size());
     for (const int i : group) out.push_back(to_point(cloud[i]));
@@ -52,7 +52,7 @@ bool ring_through(const Vector3d& a, const Vector3d& b, const Vector3d& c, Vecto
 
 class ChainSearch {
 public:
-    ChainSearch(const Cloud& cloud, const PointGroup& group, double reach)
+    ChainSearch(const Cloud& cloud, const SearchGroup& group, double reach)
         : cloud_(cloud), group_(group), distances_(positions(cloud, group)), reach_(reach) {
         const auto n = static_cast<double>(group.size());
         three_ = affordable(1.5 * n * n * n / cloud.scene().diameter, 6e4, 1, reach);
@@ -175,7 +175,7 @@ private:
     }
 
     const Cloud& cloud_;
-    const PointGroup& group_;
+    const SearchGroup& group_;
     const Distances distances_;
     double reach_;
     double three_ = 0;
@@ -186,7 +186,7 @@ private:
 /// Half-turns as pairs of pairs. A's mates are all points; B is one of a sample, nearest first.
 class HalfTurnSearch {
 public:
-    HalfTurnSearch(const Cloud& cloud, const PointGroup& group, double reach)
+    HalfTurnSearch(const Cloud& cloud, const SearchGroup& group, double reach)
         : cloud_(cloud), group_(group), distances_(positions(cloud, group)) {
         const auto n = static_cast<double>(group.size());
         slack_ = affordable(9 * n * n * n * n / 8 / std::pow(cloud.scene().diameter, 2), 1e4, 2, reach);
@@ -244,7 +244,7 @@ private:
     }
 
     const Cloud& cloud_;
-    const PointGroup& group_;
+    const SearchGroup& group_;
     const Distances distances_;
     double slack_ = 0;
     std::vector<Hypothesis> found_;
@@ -252,12 +252,12 @@ private:
 
 }  // namespace
 
-std::vector<Hypothesis> chains(const Cloud& cloud, const PointGroup& group, double reach, std::size_t most) {
+std::vector<Hypothesis> chains(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most) {
     if (group.size() < 3) return {};
     return ChainSearch(cloud, group, reach).run(most);
 }
 
-std::vector<Hypothesis> half_turns(const Cloud& cloud, const PointGroup& group, double reach, std::size_t most) {
+std::vector<Hypothesis> half_turns(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most) {
     if (group.size() < 4 || cloud.dimension() == 2) return {};
     return HalfTurnSearch(cloud, group, reach).run(most);
 }

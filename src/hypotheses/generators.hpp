@@ -10,11 +10,11 @@
 namespace insym {
 
 /// Points of one label that are looked at all with all: a whole class, or a part of a large one.
-using PointGroup = std::vector<int>;
+using SearchGroup = std::vector<int>;
 
 /// Every class of equal labels that is small enough, and overlapping neighbourhoods of the larger ones, so
 /// that what is near and what covers the whole is met. O(n) groups' points for a fixed `most`.
-std::vector<PointGroup> point_groups(const Cloud& cloud, std::size_t most);
+std::vector<SearchGroup> search_groups(const Cloud& cloud, std::size_t most);
 
 /// Translations, inversions and mirrors: each pair of points is a vote for one of each. Votes are counted in
 /// cells of several sizes up to `reach`; the fullest `most` cells of each size come back, fullest first.
@@ -23,11 +23,11 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, double reach
                              std::size_t most);
 
 /// Half-turns from two pairs A, A' and B, B' with |AB| = |A'B'| and |AB'| = |A'B|.
-std::vector<Hypothesis> half_turns(const Cloud& cloud, const PointGroup& group, double reach, std::size_t most);
+std::vector<Hypothesis> half_turns(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most);
 
 /// Rotations from three points A, B, C with |AB| = |BC|, one of whose neighbours on the ring is there; every other kind
 /// from four with |AB| = |BC| = |CD| and |AC| = |BD|. Short steps first.
-std::vector<Hypothesis> chains(const Cloud& cloud, const PointGroup& group, double reach, std::size_t most);
+std::vector<Hypothesis> chains(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most);
 
 /// Isometries that leave `center` in place, from the images of two points of the smallest shells about it:
 /// every symmetry of the whole set is among them if that is its centre.

@@ -6,10 +6,10 @@
 
 namespace insym {
 
-std::vector<PointGroup> point_groups(const Cloud& cloud, std::size_t most) {
-    std::map<int, PointGroup> classes;
+std::vector<SearchGroup> search_groups(const Cloud& cloud, std::size_t most) {
+    std::map<int, SearchGroup> classes;
     for (int i = 0; i < cloud.size(); ++i) classes[cloud.label(i)].push_back(i);
-    std::vector<PointGroup> groups;
+    std::vector<SearchGroup> groups;
     for (auto& [label, members] : classes) {
         if (members.size() < 2) continue;
         if (members.size() <= most) {
@@ -23,7 +23,7 @@ std::vector<PointGroup> point_groups(const Cloud& cloud, std::size_t most) {
         groups.emplace_back(members.begin(), members.begin() + static_cast<std::ptrdiff_t>(most));
         // Neighbourhoods along the three axes of the input: what is meant locally is near.
         for (int axis = 0; axis < 3; ++axis) {
-            PointGroup sorted = members;
+            SearchGroup sorted = members;
             std::stable_sort(sorted.begin(), sorted.end(), [&](int a, int b) { return cloud[a][axis] < cloud[b][axis]; });
             const std::size_t size = most / 3;
             for (std::size_t start = 0; start < sorted.size(); start += size / 2) {

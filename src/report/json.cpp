@@ -190,7 +190,12 @@ void write_json(std::ostream& out, const DetectResult& result, const ReportConte
     writer.list_or_null("entities", result.points.entities, convert);
     writer.list("cycles", result.cycles, convert);
     writer.list("symmetries", result.symmetries, convert);
-    writer.member("group", nullptr);
+    writer.member("group", null_or(result.group, [&](const PointGroup& group) {
+                      return Json{{"schoenflies", group.schoenflies},
+                                  {"hermann_mauguin", group.hermann_mauguin},
+                                  {"center", coordinates(group.center, dimension)},
+                                  {"empty_slots", group.empty_slots}};
+                  }));
     writer.member("stats", {{"seeds", result.stats.seeds},
                             {"cycles", result.stats.cycles},
                             {"symmetries", result.stats.symmetries}});

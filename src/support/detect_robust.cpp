@@ -56,7 +56,7 @@ public:
             monitor_.advance();
         }
         constexpr std::size_t kGroup = 400;
-        for (const PointGroup& group : point_groups(cloud_, kGroup)) {
+        for (const SearchGroup& group : search_groups(cloud_, kGroup)) {
             if (monitor_.should_stop()) break;
             offer(chains(cloud_, group, reach, 100000), budget(3e5));
             offer(half_turns(cloud_, group, reach, 20000), budget(1e5));

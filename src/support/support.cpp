@@ -30,6 +30,7 @@ namespace {
 
 /// So much of the significance may go for more links.
 constexpr double kTail = 0.8;
+constexpr double kFewLinks = 4;
 
 bool improper_kind(SymmetryType type) {
     return type == SymmetryType::mirror || type == SymmetryType::inversion ||
@@ -53,7 +54,7 @@ int least_links(SymmetryType type) {
 }  // namespace
 
 double worth(const Support& support, int dimension) {
-    return support.significance * (1 - 0.05 * degrees_of_freedom(support.type, dimension));
+    return support.significance * (1 - 0.1 * degrees_of_freedom(support.type, dimension));
 }
 
 Motion motion_of(const RigidMap& map, bool improper) {
@@ -206,8 +207,9 @@ Gatherer::Judged Gatherer::judge(SymmetryType type, const Linked& linked, double
     }
     // The best level cuts off the tail of the noise: links that cost little belong to it as well.
     Judged wide = best;
+    const double bound = std::max(kTail * best.significance, best.significance + kFewLinks);
     for (const Judged& j : all)
-        if (j.tolerance > best.tolerance && j.hits > wide.hits && j.significance <= kTail * best.significance) wide = j;
+        if (j.tolerance > best.tolerance && j.hits > wide.hits && j.significance <= bound) wide = j;
     best.hits = wide.hits;
     best.wide = wide.tolerance;
     return best;
