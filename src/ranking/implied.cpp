@@ -148,6 +148,7 @@ double slack_of(const Item& a, const Item& b, const Item& c) {
 
 void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetries) {
     const Implications all(scene, symmetries);
+    constexpr double kShare = 0.4;  // of a power's significance that its generator must have by itself
     // The largest turns and steps first, so that the smallest has the last word.
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < symmetries.size(); ++k)
@@ -161,12 +162,14 @@ void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetri
         const std::size_t g = order[i];
         std::vector<RigidMap> powers = all.powers(g, kMostPowers);
         powers.erase(powers.begin(), powers.begin() + 2);
-        double best = symmetries[g].significance;
+        const double own = symmetries[g].significance;
+        double best = own;
         for (std::size_t k = 0; k < symmetries.size(); ++k) {
             // A half-turn, a mirror or an inversion can be a power as well.
             if (k == g || symmetries[k].significance > best || (!is_pair_type(symmetries[k].type) && motion(k) < motion(g)))
                 continue;
-            if (!all.carries(all[g], all[k])) continue;
+            // A power of a chance is no intent.
+            if (own > kShare * symmetries[k].significance || !all.carries(all[g], all[k])) continue;
             double slack = 2 * all[k].slack;
             for (std::size_t j = 0; j < powers.size(); ++j) {
                 slack = 2 * all[k].slack + (2 + 0.5 * static_cast<double>(j / 2)) * all[g].slack;

@@ -162,6 +162,7 @@ public:
             radius_ = std::max(radius_, places_.back().norm());
         }
         grid_ = PointGrid(positions);
+        gap_ = nearest_gap();
         const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(spread / n);
         extent_ = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
         axes_ = solver.eigenvectors();
@@ -174,7 +175,6 @@ public:
         group.schoenflies = "C1";
         group.hermann_mauguin = "1";
         if (candidates_.empty()) return group;
-        for (const Candidate& c : candidates_) tolerance_ = std::max(tolerance_, c.slack);
         // With slots for the full group, or for those alone that need none.
         for (const bool complete : {false, true}) {
             grow(complete);
@@ -204,6 +204,17 @@ private:
         return found;
     }
 
+    /// The least distance between two points.
+    double nearest_gap() const {
+        double best = 4 * radius_ * radius_;
+        for (std::size_t i = 0; i < places_.size(); ++i)
+            grid_.visit_ball(to_point(places_[i]), std::sqrt(best), [&](int j, double square) {
+                if (static_cast<std::size_t>(j) != i) best = std::min(best, square);
+                return true;
+            });
+        return std::sqrt(best);
+    }
+
     /// Symmetries of no more than a few holes.
     void collect() {
         for (std::size_t k = 0; k < symmetries_.size(); ++k) {
@@ -211,7 +222,8 @@ private:
             if (s.type == SymmetryType::translation || s.type == SymmetryType::screw ||
                 s.type == SymmetryType::glide_reflection)
                 continue;
-            if (s.coverage < 0.5) continue;
+            // A tolerance of the size of the gaps between points says nothing about their places.
+            if (s.coverage < 0.5 || s.deviation.max > 0.2 * gap_ || s.significance > 1) continue;
             Candidate c{k, map_of(s, middle_), std::max({1.5 * s.deviation.max, 2 * scene_.resolution}), {}};
             for (const bool back : {false, true})
                 for (int i = 0; i < scene_.size(); ++i) {
@@ -223,7 +235,8 @@ private:
         }
     }
 
-    std::size_t most_slots() const { return static_cast<std::size_t>(scene_.size()) / 4; }
+    /// One point may always be lost; more only from many, or any set would be part of a larger one.
+    std::size_t most_slots() const { return std::max<std::size_t>(1, static_cast<std::size_t>(scene_.size()) / 8); }
     bool slots_too_many() const { return slots_.size() > most_slots(); }
 
     /// Candidates whose holes agree, best rank first, both ways; then products while these are listed.
@@ -231,17 +244,20 @@ private:
         elements_.clear();
         members_.clear();
         slots_.clear();
+        tolerance_ = 0;
         for (const Candidate& c : candidates_) {
             if (complete && !c.holes.empty()) continue;
+            const double tolerance = std::max(tolerance_, c.slack);
             std::vector<std::pair<Vector3d, int>> slots = slots_;
             for (const auto& [place, label] : c.holes) {
                 const bool known = std::any_of(slots.begin(), slots.end(), [&, p = place, l = label](const auto& s) {
-                    return s.second == l && (s.first - p).norm() <= 3 * tolerance_;
+                    return s.second == l && (s.first - p).norm() <= 3 * tolerance;
                 });
                 if (!known) slots.emplace_back(place, label);
             }
             if (slots.size() > most_slots()) continue;
             slots_ = std::move(slots);
+            tolerance_ = tolerance;
             members_.push_back(c.id);
             add_element(c.map.linear);
             add_element(c.map.linear.transpose());
@@ -308,6 +324,7 @@ private:
     std::vector<Vector3d> places_;
     PointGrid grid_{{}};
     double radius_ = 0;
+    double gap_ = 0;
     Vector3d extent_;
     Matrix3d axes_;
     double tolerance_ = 0;
