@@ -2,6 +2,9 @@
 // options, report and exit status is what `insym detect --help` says.
 #include "insym/detect.hpp"
 #include "insym/error.hpp"
+#include "insym/guarded_read.hpp"
+#include "insym/read_mesh.hpp"
+#include "insym/read_model.hpp"
 #include "insym/read_points.hpp"
 #include "insym/report.hpp"
 
@@ -11,6 +14,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <new>
@@ -20,10 +24,6 @@
 #include "options.hpp"
 #include "output.hpp"
 #include "progress.hpp"
-
-#ifdef INSYM_WITH_BREP
-#include "insym/read_model.hpp"
-#endif
 
 namespace insym::app {
 namespace {
@@ -75,21 +75,43 @@ std::string ending_of(const std::string& path) {
 
 /// Models and meshes that this program does not read: better said than tried as points.
 void refuse_unknown_models(const std::string& path) {
-    static const std::map<std::string, std::string> kinds = {
-        {".iges", "IGES models"}, {".igs", "IGES models"}, {".brep", "BREP models"}, {".brp", "BREP models"},
-        {".stl", "meshes"},       {".obj", "meshes"},      {".ply", "meshes"},       {".off", "meshes"},
-        {".gltf", "meshes"},      {".glb", "meshes"},      {".3mf", "meshes"}};
-    const std::string ending = ending_of(path);
-    if (const auto kind = kinds.find(ending); kind != kinds.end())
-        throw Error(ErrorCode::cannot_read,
-                    path + ": " + kind->second +
-                        " are not available yet in this version; use a STEP model (.step), "
-                        "or points as text (.xyz)");
-    if (ending == ".step" || ending == ".stp" || ending == ".p21")
-        throw Error(ErrorCode::cannot_read,
-                    path +
-                        ": this program was built without the reader of STEP models; build it with "
-                        "INSYM_BUILD_BREP=ON");
+    static const std::map<std::string, std::string> kinds = {// and the option that builds the reader
+                                                             {".step", "INSYM_BUILD_BREP"},
+                                                             {".stp", "INSYM_BUILD_BREP"},
+                                                             {".p21", "INSYM_BUILD_BREP"},
+                                                             {".iges", "INSYM_BUILD_BREP"},
+                                                             {".igs", "INSYM_BUILD_BREP"},
+                                                             {".brep", "INSYM_BUILD_BREP"},
+                                                             {".brp", "INSYM_BUILD_BREP"},
+                                                             {".bbrep", "INSYM_BUILD_BREP"},
+                                                             {".stl", "INSYM_BUILD_MESH"},
+                                                             {".obj", "INSYM_BUILD_MESH"},
+                                                             {".ply", "INSYM_BUILD_MESH"},
+                                                             {".off", "INSYM_BUILD_MESH"},
+                                                             {".gltf", ""},
+                                                             {".glb", ""},
+                                                             {".3mf", ""},
+                                                             {".sldprt", ""},
+                                                             {".fcstd", ""}};
+    const auto kind = kinds.find(ending_of(path));
+    if (kind == kinds.end()) return;
+    throw Error(ErrorCode::cannot_read,
+                path + (kind->second.empty()
+                            ? ": this format is not read; save the model as STEP or the mesh as STL"
+                            : ": this program was built without the reader of this format; build it with " +
+                                  kind->second + "=ON"));
+}
+
+/// The reader of the model or mesh, as far as this program has one; none for points.
+std::function<Input()> model_reader([[maybe_unused]] const Options& options) {
+#ifdef INSYM_WITH_BREP
+    if (is_model_path(options.input))
+        return [&] { return read_model_file(options.input, options.read_mesh.model); };
+#endif
+#ifdef INSYM_WITH_MESH
+    if (is_mesh_path(options.input)) return [&] { return read_mesh_file(options.input, options.read_mesh); };
+#endif
+    return {};
 }
 
 struct LoadedInput {
@@ -99,13 +121,11 @@ struct LoadedInput {
 
 LoadedInput load(const Options& options) {
     if (options.input == "-") return {read_points(std::cin, "-", options.read_points), false};
-#ifdef INSYM_WITH_BREP
-    if (is_model_path(options.input)) {
+    if (const auto read = model_reader(options)) {
         if (!options.read_points.columns.empty())
             throw Error(ErrorCode::invalid_option, "--columns is for points in text, not for a model");
-        return {read_model_file(options.input), true};
+        return {read_guarded(options.input, read, options.limits), true};
     }
-#endif
     refuse_unknown_models(options.input);
     return {read_points_file(options.input, options.read_points), false};
 }
@@ -139,7 +159,10 @@ void write_results(const Options& options, const DetectResult& result, const Rep
         failure = std::current_exception();
     }
     if (wants_table(options))
-        write_output("-", [&](std::ostream& out) { write_table(out, result, context, options.limit); });
+        write_output("-", [&](std::ostream& out) { 
+            write_table(out, result, context, options.limit, options.all);
+            if (options.levels) write_levels(out, result, context);
+        });
     if (failure) std::rethrow_exception(failure);
 }
 
@@ -188,7 +211,7 @@ int run(const Options& options, Clock::time_point start) {
     progress.clear();
 
     write_results(options, result,
-                  {input.path, input.format, input.unit, is_model ? "vertices" : "points", load_s});
+                  {input.path, input.format, input.unit, is_model ? options.points : "points", load_s});
     if (!options.quiet) {
         for (const Diagnostic& diagnostic : result.diagnostics) say(diagnostic.message);
         if (result.status != RunStatus::complete) say(early_end(result.status));

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -28,9 +29,18 @@ output that cannot be written; 3 the input cannot be read; 4 the input is read b
 early by a time limit or an interrupt, with a valid report of what was found. See insym detect --help.)";
 
 constexpr const char* kDetectFooter =
-    R"(Input: STEP models (.step, .stp; their vertices), or points as text (.xyz, .csv, .txt, others): 2 columns
-are x y, 3 are x y z, 4 are x y z label (a whole number; only points of one label are matched).
+    R"(Input: models (STEP .step .stp, IGES .iges .igs, BREP .brep), meshes (.stl, .obj, .ply, .off), or points as
+text (.xyz, .csv, .txt, others): 2 columns are x y, 3 are x y z, 4 are x y z label (a whole number; only points
+of one label are matched).
 The chemists' .xyz is read too: elements become labels. Lines that begin with # are comments.
+
+Models and meshes are read in a process of their own: what crashes there, hangs, or goes beyond --import-memory or
+--import-time ends with status 3 and a sentence.
+--points: a list of vertices, edges and faces, each entity with one point (the centre of a circle, the
+middle of a hole's axis, ...); representative, the default, is all three. Of meshes: corners, rims and other sharp
+lines, large flat regions.
+--labels: what must agree for points to be matched: entity (kind, geometry, hole or boss, and radius, length and
+area to within --label-tolerance), kind (vertex, edge, face), none.
 
 Output: without --json -, a ranked table on standard output; progress and notes on standard error.
 A file appears under its name only when it is whole. A reader of standard output that closes it
@@ -49,9 +59,11 @@ cannot be read; 4 the input is invalid; 5 stopped early, the report is valid and
 /// The options as they were typed; empty: not given.
 struct Typed {
     std::string input, json, html, columns, time_limit;
-    std::string method = "paper", points = "vertices", types = "M,I,C2,C,T,Z,S,W";
+    std::string points = "representative", labels = "entity", label_tolerance = "0.01", sharp_angle = "30";
+    std::string import_memory = "4096", import_time = "300";
+    std::string method = "paper", types = "M,I,C2,C,T,Z,S,W";
     std::string max_tolerance = "auto", resolution = "1e-6", limit = "20", threads = "0";
-    bool quiet = false;
+    bool quiet = false, all = false, levels = false;
 };
 
 [[noreturn]] void fail(const std::string& sentence) {
@@ -102,11 +114,45 @@ double parse_resolution(const std::string& text) {
     return *value;
 }
 
-double parse_time_limit(const std::string& text) {
+double parse_seconds(const std::string& option, const std::string& text) {
     const auto value = to_number<double>(text);
     if (!value || !(*value > 0 && std::isfinite(*value)))
-        fail_value("--time-limit", text, "a number of seconds above 0 is needed");
+        fail_value(option, text, "a number of seconds above 0 is needed");
     return *value;
+}
+
+std::size_t parse_mebibytes(const std::string& option, const std::string& text) {
+    constexpr int kLeast = 16, kMost = 1 << 24;
+    const auto value = to_number<int>(text);
+    if (!value || *value < kLeast || *value > kMost)
+        fail_value(option, text,
+                   "a whole number of MiB from " + std::to_string(kLeast) + " to " + std::to_string(kMost) +
+                       " is needed");
+    return static_cast<std::size_t>(*value) << 20;
+}
+
+double parse_label_tolerance(const std::string& text) {
+    const auto value = to_number<double>(text);
+    if (!value || !(*value >= 0 && *value < 1))
+        fail_value("--label-tolerance", text, "a share is needed, from 0 to below 1, such as 0.01");
+    return *value;
+}
+
+double parse_sharp_angle(const std::string& text) {
+    const auto value = to_number<double>(text);
+    if (!value || !(*value > 0 && *value < 180))
+        fail_value("--sharp-angle", text, "an angle in degrees is needed, above 0 and below 180");
+    return *value;
+}
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+    std::vector<std::string> words;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t end = std::min(text.find(',', at), text.size());
+        words.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return words;
 }
 
 std::vector<std::string> type_letters() {
@@ -136,11 +182,7 @@ SymmetryType parse_type(const std::string& text) {
 
 TypeSet parse_types(const std::string& text) {
     TypeSet types;
-    for (std::size_t at = 0; at <= text.size();) {
-        const std::size_t end = std::min(text.find(',', at), text.size());
-        types.insert(parse_type(text.substr(at, end - at)));
-        at = end + 1;
-    }
+    for (const std::string& word : split_at_commas(text)) types.insert(parse_type(word));
     return types;
 }
 
@@ -150,14 +192,35 @@ Method parse_method(const std::string& text) {
     fail("unknown value '" + text + "' of --method" + hint_for(text, {"robust", "paper"}));
 }
 
-/// One of `known`, of which the first is there in this version and the others are announced.
-void check_choice(const std::string& option, const std::string& value,
-                  const std::vector<std::string>& known) {
-    if (value == known.front()) return;
-    if (std::find(known.begin(), known.end(), value) != known.end())
-        fail(option + " " + value + " is not available yet in this version; use " + option + " " +
-             known.front());
-    fail("unknown value '" + value + "' of " + option + hint_for(value, known));
+/// --points: which entities of a model; and the words for the report, in a fixed order.
+void parse_points(const std::string& text, Options& options) {
+    ReadModelOptions& model = options.read_mesh.model;
+    model.vertices = model.edges = model.faces = false;
+    const std::vector<std::string> known = {"representative", "vertices", "edges", "faces"};
+    for (const std::string& word : split_at_commas(text)) {
+        if (std::find(known.begin(), known.end(), word) == known.end())
+            fail("unknown value '" + word +
+                 "' of --points, which takes representative, or a list of vertices, edges, faces" +
+                 did_you_mean(word, known));
+        const bool all = word == "representative";
+        model.vertices |= all || word == "vertices";
+        model.edges |= all || word == "edges";
+        model.faces |= all || word == "faces";
+    }
+    if (model.vertices && model.edges && model.faces) {
+        options.points = "representative";
+        return;
+    }
+    for (const auto& [chosen, word] : {std::pair(model.vertices, "vertices"), std::pair(model.edges, "edges"),
+                                       std::pair(model.faces, "faces")})
+        if (chosen) options.points += (options.points.empty() ? "" : ",") + std::string(word);
+}
+
+LabelBy parse_labels(const std::string& text) {
+    const std::vector<std::string> known = {"entity", "kind", "none"};
+    const auto found = std::find(known.begin(), known.end(), text);
+    if (found == known.end()) fail("unknown value '" + text + "' of --labels" + hint_for(text, known));
+    return static_cast<LabelBy>(found - known.begin());
 }
 
 // The command line ----------------------------------------------------------------------------
@@ -173,7 +236,17 @@ void declare(CLI::App& detect, Typed& typed) {
     add("--html", typed.html, "FILE", "Not available yet");
     add("--method", typed.method, "robust|paper", "Definition of a symmetry (default: paper)");
     add("--types", typed.types, "M,I,C2,...", "Kinds to look for, see below (default: all)");
-    add("--points", typed.points, "vertices", "What represents a model");
+    add("--points", typed.points, "LIST",
+        "Entities of a model that give points, see below (default: representative)");
+    add("--labels", typed.labels, "entity|kind|none",
+        "What tells points of a model apart, see below (default: entity)");
+    add("--label-tolerance", typed.label_tolerance, "F",
+        "Share by which equal radii, lengths and areas may differ (default: 0.01)");
+    add("--sharp-angle", typed.sharp_angle, "DEG",
+        "Edges of a mesh that turn by more are sharp (default: 30)");
+    add("--import-memory", typed.import_memory, "MIB",
+        "Most memory to read a model with (default: 4096 MiB)");
+    add("--import-time", typed.import_time, "S", "Most time to read a model in (default: 300 seconds)");
     add("--max-tolerance", typed.max_tolerance, "F|auto",
         "Largest tolerance, a share of the diameter (default: auto)");
     add("--resolution", typed.resolution, "F",
@@ -183,6 +256,9 @@ void declare(CLI::App& detect, Typed& typed) {
     add("--time-limit", typed.time_limit, "S",
         "Stop after so many seconds since the start, with what is found");
     add("--columns", typed.columns, "x,y,label", "Meaning of the columns of points: x, y, z, label or skip");
+    detect.add_flag("--all", typed.all, "List what follows from others as well");
+    detect.add_flag("--levels", typed.levels,
+                    "List, too, from which tolerance to which each set of symmetries holds");
     detect.add_flag("--quiet", typed.quiet, "No progress, no notes; with --json FILE no table either");
 }
 
@@ -235,7 +311,6 @@ Options checked(const Typed& typed) {
     Options options;
     if (!typed.html.empty()) fail("--html is not available yet in this version; use --json for a report");
     options.detect.method = parse_method(typed.method);
-    check_choice("--points", typed.points, {"vertices", "representative", "edges", "faces"});
     options.input = typed.input;
     options.json = typed.json == "/dev/stdout" ? "-" : typed.json;
     options.detect.types = parse_types(typed.types);
@@ -248,7 +323,15 @@ Options checked(const Typed& typed) {
     constexpr int kMostListed = 1000000000, kMostThreads = 1024;
     options.limit = parse_count("--limit", typed.limit, kMostListed);
     options.threads = parse_count("--threads", typed.threads, kMostThreads);
-    if (!typed.time_limit.empty()) options.time_limit_s = parse_time_limit(typed.time_limit);
+    if (!typed.time_limit.empty()) options.time_limit_s = parse_seconds("--time-limit", typed.time_limit);
+    parse_points(typed.points, options);
+    options.read_mesh.model.labels = {parse_labels(typed.labels),
+                                      parse_label_tolerance(typed.label_tolerance)};
+    options.read_mesh.sharp_angle_deg = parse_sharp_angle(typed.sharp_angle);
+    options.limits = {parse_mebibytes("--import-memory", typed.import_memory),
+                      parse_seconds("--import-time", typed.import_time)};
+    options.all = typed.all;
+    options.levels = typed.levels;
     options.quiet = typed.quiet;
     return options;
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "insym/detect.hpp"
+#include "insym/guarded_read.hpp"
+#include "insym/read_mesh.hpp"
 #include "insym/read_points.hpp"
 
 #include <optional>
@@ -14,9 +16,14 @@ struct Options {
     std::string json;   ///< a path, "-" for standard output, empty for no report
     DetectOptions detect;
     ReadPointsOptions read_points;
-    int limit = 0;    ///< symmetries in the table, 0: all
-    int threads = 0;  ///< 0: all cores
+    ReadMeshOptions read_mesh;  ///< of models, too
+    ReadLimits limits;          ///< of reading a model
+    std::string points;  ///< what stands for a model, as in the report: "representative", "edges,faces", ...
+    int limit = 0;       ///< symmetries in the table, 0: all
+    int threads = 0;     ///< 0: all cores
     std::optional<double> time_limit_s;
+    bool all = false;     ///< also what follows from other symmetries
+    bool levels = false;  ///< the table of tolerances as well
     bool quiet = false;
 };
 

@@ -3,10 +3,11 @@
 
     run_bench.py [--insym PROGRAM] [--shared FOLDER] [--repetitions N] [--quick]
 
-Detection only (the report's timing.detect_s), one thread, method paper; median and least of the
-repetitions, which take turns so that a busy machine slows all inputs alike. Targets: the paper's own
-setting, 0.05 of the diameter, on 84 points in 0.5 s (the paper: 251 s for its 76 points); real models of 435
-vertices and more at 1e-4 in 1 s. The last line compares with reference.py on one small set.
+Detection only (the report's timing.detect_s), method paper; median and least of the repetitions, which take
+turns so that a busy machine slows all inputs alike. Targets: the paper's own setting, 0.05 of the diameter and
+the kinds C, T, Z, S, W of its Table 1, on 84 points in 0.5 s on one thread (the paper: 251 s for its 76 points); all
+kinds on real models of 435 vertices and more at 1e-4 in 1 s on all cores. The last line compares with
+reference.py on one small set.
 """
 import argparse
 import importlib
@@ -23,22 +24,29 @@ from pathlib import Path
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ[variable] = "1"
 
-#         file in shared/data         share  target in s
-INPUTS = [("spinner4_vertices.xyz", 0.05, 0.5),
-          ("dsub37.step", 1e-4, 1.0),
-          ("Ventilator.stp", 1e-4, 1.0),
-          ("as1-oc-214.stp", 1e-4, None),
-          ("spinner4_vertices.xyz", 1e-4, None),
-          ("spinner4_vertices.xyz", 1e-6, None)]
+CYCLES_ONLY = "C,T,Z,S,W"
+ALL = "M,I,C2,C,T,Z,S,W"
+#         file in shared/data         share  kinds     threads (0: all)  target in s
+INPUTS = [("spinner4_vertices.xyz", 0.05, CYCLES_ONLY, 1, 0.5),
+          ("spinner4_vertices.xyz", 0.05, ALL, 1, None),
+          ("dsub37.step", 1e-4, ALL, 0, 1.0),
+          ("Ventilator.stp", 1e-4, ALL, 0, 1.0),
+          ("dsub37.step", 1e-4, ALL, 1, None),
+          ("Ventilator.stp", 1e-4, ALL, 1, None),
+          ("as1-oc-214.stp", 1e-4, ALL, 1, None),
+          ("spinner4_vertices.xyz", 1e-4, ALL, 1, None),
+          ("spinner4_vertices.xyz", 1e-6, ALL, 1, None)]
 PAPER_S, PAPER_POINTS = 251, 76
 
 
-def detect(insym, path, share):
+def detect(insym, path, share, kinds=ALL, threads=1):
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "report.json"
+        command = [insym, "detect", path, "--method", "paper", "--max-tolerance", repr(share), "--types", kinds,
+                   "--json", out, "--quiet"] + (["--points", "vertices"] if path.suffix != ".xyz" else [])
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        subprocess.run([insym, "detect", path, "--method", "paper", "--threads", "1", "--max-tolerance", repr(share),
-                        "--json", out, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(command + (["--threads", str(threads)] if threads else []), check=True,
+                       stdout=subprocess.DEVNULL)
         spent = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
         report = json.loads(out.read_text())
     report["timing"]["cpu_s"] = spent
@@ -46,22 +54,23 @@ def detect(insym, path, share):
 
 
 def measure_all(insym, inputs, repetitions):
-    """{input: (a report, seconds of each repetition)}"""
-    measured = {}
+    """For each input (a report, seconds of each repetition)."""
+    measured = [(None, []) for _ in inputs]
     for _ in range(repetitions):
-        for path, share in inputs:
-            report = detect(insym, path, share)
-            measured.setdefault((path, share), (report, []))[1].append(report["timing"])
+        for k, (path, share, kinds, threads, _) in enumerate(inputs):
+            report = detect(insym, path, share, kinds, threads)
+            measured[k] = (report, measured[k][1] + [report["timing"]])
     return measured
 
 
-def row(path, share, target, report, timings):
+def row(path, share, kinds, threads, target, report, timings):
     seconds = [t["detect_s"] for t in timings]
     cycles = statistics.median(t["cycles_s"] for t in timings)
     cpu = min(t["cpu_s"] for t in timings)
     median = statistics.median(seconds)
     verdict = "" if target is None else f"{target:.1f} s " + ("met" if median <= target else "MISSED")
-    return (f"{path.name:<24}{len(report['points']):>5}{share:>9g}{report['stats']['seeds']:>9}"
+    return (f"{path.name:<24}{len(report['points']):>5}{share:>9g} {'all' if kinds == ALL else kinds:<10}"
+            f"{threads or os.cpu_count():>4}{report['stats']['seeds']:>9}"
             f"{report['stats']['cycles']:>8}{report['stats']['symmetries']:>9}{cycles:>9.3f}"
             f"{median - cycles:>9.3f}{median:>9.3f}{min(seconds):>9.3f}{cpu:>9.3f}  {verdict}")
 
@@ -104,20 +113,20 @@ def main():
     options = parser.parse_args()
     insym = options.insym.resolve()
     data = options.shared / "data"
-    wanted = [(data / name, share, target) for name, share, target in INPUTS
-              if (data / name).exists() and (target is not None or not options.quick)]
+    wanted = [(data / name, *rest) for name, *rest in INPUTS
+              if (data / name).exists() and (rest[-1] is not None or not options.quick)]
     if not wanted:
         print(f"{data} is absent: nothing to time")
         return
-    measured = measure_all(insym, [(p, s) for p, s, _ in wanted], options.repetitions)
-    print(f"One thread, {options.repetitions} repetitions, load average {os.getloadavg()[0]:.1f} on {os.cpu_count()} "
+    measured = measure_all(insym, wanted, options.repetitions)
+    print(f"{options.repetitions} repetitions, load average {os.getloadavg()[0]:.1f} on {os.cpu_count()} "
           "cores; seconds: medians, the\nleast detect_s, and the least processor time of the whole program with reading and writing")
-    print(f"{'input':<24}{'n':>5}{'share':>9}{'seeds':>9}{'cycles':>8}{'symm.':>9}{'cycles_s':>9}{'symm._s':>9}"
-          f"{'detect_s':>9}{'least':>9}{'cpu_s':>9}  target")
-    for path, share, target in wanted:
-        print(row(path, share, target, *measured[path, share]))
-        if share == 0.05:
-            spent = statistics.median(t["detect_s"] for t in measured[path, share][1])
+    print(f"{'input':<24}{'n':>5}{'share':>9} {'kinds':<10}{'thr.':>4}{'seeds':>9}{'cycles':>8}{'symm.':>9}{'cycles_s':>9}"
+          f"{'symm._s':>9}{'detect_s':>9}{'least':>9}{'cpu_s':>9}  target")
+    for case, (report, timings) in zip(wanted, measured):
+        print(row(*case, report, timings))
+        if case[1] == 0.05 and case[2] == CYCLES_ONLY:
+            spent = statistics.median(t["detect_s"] for t in timings)
             print(f"  the paper: {PAPER_S} s for {PAPER_POINTS} points at this share; {PAPER_S / spent:.0f} times as fast")
     compare_with_reference(insym, options.shared, options.repetitions)
 

@@ -6,11 +6,13 @@ install(DIRECTORY include/insym ${CMAKE_CURRENT_BINARY_DIR}/include/insym
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 install(EXPORT insym-core NAMESPACE insym:: FILE insym-core.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/insym)
-if(INSYM_BUILD_BREP)
-  install(TARGETS insym_brep EXPORT insym-brep)
-  install(EXPORT insym-brep NAMESPACE insym:: FILE insym-brep.cmake
-    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/insym)
-endif()
+foreach(component brep mesh)
+  if(TARGET insym_${component})
+    install(TARGETS insym_${component} EXPORT insym-${component})
+    install(EXPORT insym-${component} NAMESPACE insym:: FILE insym-${component}.cmake
+      DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/insym)
+  endif()
+endforeach()
 if(INSYM_BUILD_APP)
   install(TARGETS insym_app)
 endif()

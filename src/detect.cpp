@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include "cycles/detect_cycles.hpp"
@@ -64,11 +66,17 @@ void check_points(const PointSet& points) {
     if (points.size() == 1) refuse("only one point: a symmetry needs at least two");
 }
 
-/// The share of the diameter up to which chance does not drown what is meant: n scattered points have
-/// of the order of n^4 tau^2 chains of four points by chance; this keeps them of the order of n.
-double automatic_tolerance(int n, double resolution) {
+/// The share of the diameter up to which chance does not drown what is meant: m scattered points of one label
+/// have of the order of m^4 tau^2 chains of four points by chance; this keeps them all of the order of n.
+double automatic_tolerance(const PointSet& points, double resolution) {
     constexpr double kPaperTolerance = 0.05;
-    return std::clamp(std::pow(n, -1.5), std::min(10 * resolution, kPaperTolerance), kPaperTolerance);
+    const auto n = static_cast<double>(points.size());
+    std::map<int, double> sizes;
+    for (const int label : points.labels) sizes[label] += 1;
+    if (points.labels.empty()) sizes[0] = n;
+    double chains = 0;
+    for (const auto& [label, m] : sizes) chains += std::pow(m, 4);
+    return std::clamp(std::sqrt(n / chains), std::min(10 * resolution, kPaperTolerance), kPaperTolerance);
 }
 
 TypeSet cycle_types() {
@@ -114,7 +122,8 @@ void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& mon
     result.stats = {search.seeds, result.cycles.size(), result.symmetries.size()};
 }
 
-void run_robust(const PointScene& scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
+void run_robust(const PointScene& scene, const DetectOptions& options, RunMonitor& monitor,
+                DetectResult& result) {
     const auto start = std::chrono::steady_clock::now();
     const Significance significance(scene);
     RobustResult found = detect_robust(scene, significance, options.types, monitor);
@@ -158,13 +167,14 @@ DetectResult detect(const PointSet& points, const DetectOptions& options, const 
                     std::to_string(result.points.size()) +
                         " points are too many: method paper keeps all distances, for at most " +
                         std::to_string(kMostPoints) + " points");
-    const double automatic =
-        paper ? automatic_tolerance(static_cast<int>(result.points.size()), options.resolution)
-              : std::max(kLargestTolerance, options.resolution);
+    const double automatic = paper ? automatic_tolerance(result.points, options.resolution)
+                                   : std::max(kLargestTolerance, options.resolution);
     result.max_tolerance = options.max_tolerance.value_or(automatic) * result.diameter;
 
     RunMonitor monitor(context);
-    tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
+    // More threads than cores would only make TBB complain on standard error.
+    const int cores = tbb::info::default_concurrency();
+    tbb::task_arena arena(context.threads > 0 ? std::min(context.threads, cores) : cores);
     arena.execute([&] {
         const PointScene scene{result.points, result.diameter, result.resolution, result.max_tolerance};
         if (paper) {

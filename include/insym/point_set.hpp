@@ -16,11 +16,23 @@ using Point = std::array<double, 3>;
 /// What a representative point of a model stands for.
 enum class EntityKind { vertex, edge, face };
 
-/// The part of a model that a point comes from.
+/// The side of a round face that the material is on, told from its orientation: a hole or a boss goes at
+/// least three quarters of the way round its axis, a hollow (the fillet of an inner corner, the end of a
+/// slot) or a round (the blend of an outer corner) less. Spheres and tori are hollows or rounds.
+enum class EntityRole { none, hole, boss, hollow, round };
+
+/// The part of a model that a point comes from. Lengths are in the input's unit, and its square for areas.
 struct Entity {
     EntityKind kind = EntityKind::vertex;
-    std::int64_t id = 0;   ///< 1-based index in the reader's documented, stable order
-    std::string geometry;  ///< "point", "circle", "line", "plane", ...
+    std::int64_t id = 0;              ///< 1-based index in the reader's documented, stable order
+    std::string geometry{};           ///< "point", "circle", "line", "plane", ...
+    std::vector<std::int64_t> ids{};  ///< all, ascending, where several make one entity; empty: only `id`
+    EntityRole role = EntityRole::none;
+    std::optional<double> radius{};  ///< of circle, cylinder, sphere; the major one of ellipse and torus
+    std::optional<double> minor_radius{};  ///< of ellipse and torus
+    std::optional<double> length{};        ///< of an edge
+    std::optional<double> area{};          ///< of a face
+    std::string part{};  ///< names from the assembly down, parted by "/"; empty where the file has none
 };
 
 /// A set of points in E^d (definitions, section 1).

@@ -30,10 +30,11 @@ public:
 
 }  // namespace
 
-OcctSession::OcctSession() : lock_(session_mutex()), printers_(Message::DefaultMessenger()->Printers()) {
+OcctSession::OcctSession(Healing healing)
+    : lock_(session_mutex()), printers_(Message::DefaultMessenger()->Printers()) {
     STEPControl_Controller::Init();  // makes the settings, if nothing was read before
     algorithms_ = XSAlgo::AlgoContainer();
-    XSAlgo::SetAlgoContainer(new UnhealedShapes);
+    if (healing == Healing::off) XSAlgo::SetAlgoContainer(new UnhealedShapes);
     Message::DefaultMessenger()->ChangePrinters().Clear();
 }
 

@@ -9,13 +9,14 @@
 
 namespace insym {
 
-/// While it lives, Open CASCADE prints nothing and gives shapes as the file has them.
-///
-/// Sessions wait for one another. Shapes are not healed: healing splits edges and adds vertices where the
-/// seams of surfaces happen to lie, which no designer put there, and takes ten times as long as the rest.
+/// Whether shapes are as the file has them or as Open CASCADE repairs them for other programs too: with the
+/// seams and the curves in parameters that files leave out, without which faces have no area.
+enum class Healing { off, on };
+
+/// While it lives, Open CASCADE prints nothing, and heals shapes or not. Sessions wait for one another.
 class OcctSession {
 public:
-    OcctSession();
+    explicit OcctSession(Healing healing);
     ~OcctSession();
     OcctSession(const OcctSession&) = delete;
     OcctSession& operator=(const OcctSession&) = delete;

@@ -44,15 +44,77 @@ void Chain::add(int point, End end) {
         buffer_[--begin_] = point;
 }
 
-bool Chain::contains(int point) const {
-    const auto all = points();
-    return std::find(all.begin(), all.end(), point) != all.end();
+// --- short sequences -----------------------------------------------------------------------------
+
+namespace {
+
+/// Most sequences are this short; their orbits are simply counted again for each question, in loops of known
+/// length.
+constexpr std::size_t kShortSequence = 7;
+
+template <std::size_t kPoints, bool kClosed>
+ToleranceInterval interval_of(const double* const* rows, const int* points, double floor, double limit) {
+    constexpr std::size_t kOrbits = kClosed ? kPoints / 2 : kPoints - 1;
+    Span spans[kOrbits];
+#pragma GCC unroll 8
+    for (std::size_t i = 0; i < kPoints; ++i)
+#pragma GCC unroll 8
+        for (std::size_t j = i + 1; j < kPoints; ++j) {
+            const std::size_t step = kClosed ? std::min(j - i, kPoints - (j - i)) : j - i;
+            spans[step - 1].include(rows[i][points[j]]);
+        }
+    return detail::interval_of_few<kOrbits>(spans, floor, limit);
+}
+
+template <bool kClosed>
+ToleranceInterval short_interval(const double* const* rows, std::span<const int> points, double floor,
+                                 double limit) {
+    switch (points.size()) {
+        case 2:
+            return interval_of<2, kClosed>(rows, points.data(), floor, limit);
+        case 3:
+            return interval_of<3, kClosed>(rows, points.data(), floor, limit);
+        case 4:
+            return interval_of<4, kClosed>(rows, points.data(), floor, limit);
+        case 5:
+            return interval_of<5, kClosed>(rows, points.data(), floor, limit);
+        case 6:
+            return interval_of<6, kClosed>(rows, points.data(), floor, limit);
+        default:
+            return interval_of<kShortSequence, kClosed>(rows, points.data(), floor, limit);
+    }
+}
+
+/// E_min of a chain of kPoints points with one more at the distances `d`; `points` from that end inwards.
+template <std::size_t kPoints>
+double extended_tolerance(const Span* orbits, const double* d, const int* points, double floor,
+                          double limit) {
+    Span spans[kPoints];
+#pragma GCC unroll 8
+    for (std::size_t k = 0; k < kPoints; ++k) {
+        const double own = d[points[k]];
+        spans[k] = {own, own};
+        // The farthest point starts an orbit of its own.
+        if (k + 1 < kPoints) spans[k].include(orbits[k]);
+    }
+    return detail::interval_of_few<kPoints>(spans, floor, limit).min;
+}
+
+}  // namespace
+
+ToleranceInterval ChainOracle::short_interval_of(std::span<const int> points, bool closed,
+                                                 double limit) const {
+    const double* rows[kShortSequence];
+    for (std::size_t i = 0; i < points.size(); ++i) rows[i] = scene_.distances.row(points[i]).data();
+    return closed ? short_interval<true>(rows, points, scene_.resolution, limit)
+                  : short_interval<false>(rows, points, scene_.resolution, limit);
 }
 
 // --- tolerance -----------------------------------------------------------------------------------
 
 ToleranceInterval ChainOracle::interval(std::span<const int> points, bool closed) {
     const std::size_t c = points.size();
+    if (c <= kShortSequence) return short_interval_of(points, closed, kInfinity);
     const std::size_t orbits = closed ? c / 2 : c - 1;
     spans_.assign(orbits, Span{});
     for (std::size_t i = 0; i < c; ++i) {
@@ -88,75 +150,57 @@ bool ChainOracle::holds(std::span<const int> points, bool closed) {
 // --- candidates ----------------------------------------------------------------------------------
 
 /// Calls visit(q, E_min of the chain with q at `end`) for the points q that keep all orbits within `limit`,
-/// which visit may lower. `among`: as in best_candidate().
+/// which visit may lower.
 template <class Visit>
-void ChainOracle::visit_extensions(const Chain& chain, End end, const std::vector<Candidate>* among,
-                                   double& limit, Visit visit) {
+void ChainOracle::visit_extensions(const Chain& chain, End end, double& limit, Visit visit) {
+    const auto among =
+        fourths_.of(chain.from(end, 2), chain.from(end, 1), chain.from(end, 0), fourths_scratch_);
+    if (among.empty()) return;
     const auto orbits = chain.orbits();
-    const auto points = chain.points();
-    const std::size_t c = points.size();
-    // Each orbit says how far q may be from one point of the chain, from the end inwards.
-    shells_.resize(c);
-    const double slack = 1e-12 * scene_.diameter;
-    for (std::size_t k = 0; k < c; ++k) {
-        shells_[k].distances = scene_.distances.row(points[end == End::right ? c - 1 - k : k]).data();
-        if (k + 1 == c) break;
-        shells_[k].low = orbits[k].high - limit - slack;
-        shells_[k].high = orbits[k].low + limit + slack;
-    }
-    // Orbits in order of length, so that they are nearly so with q, too, and quickly sorted.
-    by_length_.resize(c - 1);
-    for (std::size_t k = 0; k + 1 < c; ++k) {
-        std::size_t at = k;
-        for (; at > 0 && orbits[k].low < orbits[by_length_[at - 1]].low; --at)
-            by_length_[at] = by_length_[at - 1];
-        by_length_[at] = k;
-    }
-    spans_.resize(c);
-    const auto consider = [&](int q) {
-        for (std::size_t k = 0; k + 1 < c; ++k) {
-            const double d = shells_[k].distances[q];
-            if (d < shells_[k].low || d > shells_[k].high) return;
+    const auto c = static_cast<std::size_t>(chain.size());
+    inwards_.resize(c);
+    for (int k = 0; k < chain.size(); ++k) inwards_[static_cast<std::size_t>(k)] = chain.from(end, k);
+    const auto tolerance_with = [&](int q) {
+        const double* d = scene_.distances.row(q).data();
+        const double floor = scene_.resolution;
+        switch (c) {
+            case 4:
+                return extended_tolerance<4>(orbits.data(), d, inwards_.data(), floor, limit);
+            case 5:
+                return extended_tolerance<5>(orbits.data(), d, inwards_.data(), floor, limit);
+            case 6:
+                return extended_tolerance<6>(orbits.data(), d, inwards_.data(), floor, limit);
+            default:
+                break;
         }
-        for (std::size_t k = 0; k + 1 < c; ++k) {
-            spans_[k] = orbits[by_length_[k]];
-            spans_[k].include(shells_[by_length_[k]].distances[q]);
-            if (spans_[k].spread() > limit) return;
+        spans_.assign(orbits.begin(), orbits.end());
+        spans_.emplace_back();
+        for (std::size_t k = 0; k < c; ++k) {
+            spans_[k].include(d[inwards_[k]]);
+            if (spans_[k].spread() > limit) return kInfinity;
         }
-        // The farthest point starts an orbit of its own.
-        const double longest = shells_[c - 1].distances[q];
-        spans_[c - 1] = {longest, longest};
-        const double tolerance = tolerance_interval(spans_, scene_.resolution, limit).min;
-        if (tolerance <= limit && !chain.contains(q)) visit(q, tolerance);
+        return tolerance_interval(spans_, floor, limit).min;
     };
-    if (among != nullptr) {
-        // A part of a chain is never worse than the whole: no later one of the list can be better.
-        for (const Candidate& candidate : *among) {
-            if (candidate.tolerance > limit) break;
-            consider(candidate.point);
-        }
-        return;
+    // A part of a chain is never worse than the whole: no later one of the list can be better.
+    for (const Candidate& q : among) {
+        if (q.tolerance > limit) break;
+        // The list knows of the last three.
+        if (c > 3 && chain.contains(q.point, end, 3)) continue;
+        const double tolerance = c > 3 ? tolerance_with(q.point) : q.tolerance;
+        if (tolerance <= limit) visit(q.point, tolerance);
     }
-    const int label = scene_.label(chain.from(end, 0));
-    scene_.distances.visit_shell(chain.from(end, 0), shells_[0].low, shells_[0].high, [&](int q, double) {
-        if (scene_.label(q) == label) consider(q);
-        return true;
-    });
 }
 
 void ChainOracle::candidates(const Chain& chain, End end, std::vector<Candidate>& out) {
     out.clear();
     double limit = scene_.max_tolerance;
-    visit_extensions(chain, end, nullptr, limit, [&](int q, double tolerance) {
-        out.push_back({tolerance, q});
-    });
+    visit_extensions(chain, end, limit, [&](int q, double tolerance) { out.push_back({tolerance, q}); });
     std::sort(out.begin(), out.end());
 }
 
-Candidate ChainOracle::best_candidate(const Chain& chain, End end, double limit,
-                                      const std::vector<Candidate>* among) {
+Candidate ChainOracle::best_candidate(const Chain& chain, End end, double limit) {
     Candidate best{kInfinity, -1};
-    visit_extensions(chain, end, among, limit, [&](int q, double tolerance) {
+    visit_extensions(chain, end, limit, [&](int q, double tolerance) {
         best = std::min(best, Candidate{tolerance, q});
         limit = best.tolerance;
     });
@@ -220,131 +264,120 @@ void ChainOracle::collect_extremes(std::span<const int> points, bool closed) {
     }
 }
 
-/// For short sequences the orbits without one point are simply counted again; for long ones they follow
-/// from the extremes, so that C2 costs O(c^2) and not O(c^3).
-constexpr std::size_t kShortSequence = 8;
-
-void ChainOracle::collect_distances(std::span<const int> points) {
-    const std::size_t c = points.size();
-    table_.resize(c * c);
-    for (std::size_t i = 0; i < c; ++i) {
-        const auto d = scene_.distances.row(points[i]);
-        for (std::size_t j = 0; j < c; ++j) table_[i * c + j] = d[static_cast<std::size_t>(points[j])];
-    }
-}
-
-/// The spans of the orbits without the distances of the point `at` (c or more: of no point).
-void ChainOracle::leave_out(std::span<const int> points, bool closed, std::size_t at) {
-    const std::size_t c = points.size();
-    rest_.resize(closed ? c / 2 : c - 1);
-    if (c > kShortSequence) {
-        for (std::size_t r = 1; r <= rest_.size(); ++r) {
-            const int before = static_cast<int>(at) - static_cast<int>(r);
-            rest_[r - 1] = extremes_[r - 1].without(
-                static_cast<int>(at), closed && before < 0 ? before + static_cast<int>(c) : before);
-        }
-        return;
-    }
-    for (std::size_t r = 1; r <= rest_.size(); ++r) {
-        Span span;
-        for (std::size_t i = 0; i < (closed ? c : c - r); ++i) {
-            const std::size_t j = i + r < c ? i + r : i + r - c;
-            if (i != at && j != at) span.include(table_[i * c + j]);
-        }
-        rest_[r - 1] = span;
-    }
-}
-
 bool ChainOracle::unambiguous(std::span<const int> points, bool closed) {
+    double eps = 0;
     if (points.size() <= kShortSequence) {
-        collect_distances(points);
-        leave_out(points, closed, points.size());
-        spans_ = rest_;
+        eps = short_interval_of(points, closed, kInfinity).min;
     } else {
         collect_extremes(points, closed);
+        left_out_ = points.size();
         spans_.clear();
         for (const Extremes& e : extremes_) spans_.push_back(e.all());
+        eps = tolerance_interval(spans_, scene_.resolution).min;
     }
-    const double eps = tolerance_interval(spans_, scene_.resolution).min;
-    // What could replace a point the last time often can again: most chains end here.
-    const auto again = std::find(points.begin(), points.end(), replaced_);
-    if (again != points.end() &&
-        replaceable_by_twin(points, closed, static_cast<std::size_t>(again - points.begin()), eps))
+    // What could be replaced the last time often can again, by the same point: most chains end here.
+    const auto again = std::find(points.begin(), points.end(), replaced_) - points.begin();
+    const auto last = static_cast<std::size_t>(again);
+    if (last < points.size() && scene_.label(replaced_by_) == scene_.label(replaced_) &&
+        (fits_in_place(points, closed, last, replaced_by_, eps) || replaceable(points, closed, last, eps)))
         return false;
     for (std::size_t at = 0; at < points.size(); ++at)
-        if (points[at] != replaced_ && replaceable_by_twin(points, closed, at, eps)) return false;
-    for (std::size_t at = 0; at < points.size(); ++at)
-        if (replaceable(points, closed, at, eps)) return false;
+        if (at != last && replaceable(points, closed, at, eps)) return false;
     return true;
 }
 
-bool ChainOracle::replaceable_by_twin(std::span<const int> points, bool closed, std::size_t at, double eps) {
-    const int twin = twin_[static_cast<std::size_t>(points[at])];
-    if (twin < 0) return false;
-    const std::size_t c = points.size();
-    const auto d = scene_.distances.row(twin);
-    const auto to = [&](std::size_t k) { return d[static_cast<std::size_t>(points[k])]; };
-    const std::size_t neighbour = at + 1 < c ? at + 1 : at - 1;
-    if (std::abs(to(neighbour) - scene_.distances(points[at], points[neighbour])) > 2 * eps) return false;
-    // Its own two distances of a step must agree; this settles most before the other orbits are looked at.
-    for (std::size_t r = 1; r < c; ++r) {
-        Span span;
-        if (at + r < c) span.include(to(at + r));
-        if (at >= r) span.include(to(at - r));
-        if (span.empty()) break;
-        if (span.spread() > eps) return false;
-    }
-    if (std::find(points.begin(), points.end(), twin) != points.end()) return false;
-    leave_out(points, closed, at);
-    if (!fits_in_place(points, closed, at, twin, eps)) return false;
-    replaced_ = points[at];
-    return true;
-}
-
+/// What can stand in the place of a point is a fourth point of the three beside it, on whichever side there
+/// are three.
 bool ChainOracle::replaceable(std::span<const int> points, bool closed, std::size_t at, double eps) {
-    leave_out(points, closed, at);
-    const int neighbour = at + 1 < points.size() ? points[at + 1] : points[at - 1];
-    const double usual = scene_.distances(points[at], neighbour);
-    double low = usual - 2 * eps;
-    double high = usual + 2 * eps;
-    if (!rest_.front().empty()) {
-        low = std::max(low, rest_.front().high - eps);
-        high = std::min(high, rest_.front().low + eps);
+    const std::size_t c = points.size();
+    if (c < 4 || (!closed && at < 3 && at + 3 >= c)) return replaceable_from_shell(points, closed, at, eps);
+    const bool before = closed || at >= 3;
+    const auto beside = [&](std::size_t k) {
+        return points[!before ? at + k : at >= k ? at - k : at + c - k];
+    };
+    const auto fourths = fourths_.of(beside(3), beside(2), beside(1), fourths_scratch_);
+    for (const Candidate& q : fourths) {
+        if (q.tolerance > eps) break;
+        if (q.point != points[at] && fits_in_place(points, closed, at, q.point, eps)) return true;
     }
+    return false;
+}
+
+/// The same for the middle of a short chain: any point at the right distance from its neighbour.
+bool ChainOracle::replaceable_from_shell(std::span<const int> points, bool closed, std::size_t at,
+                                         double eps) {
+    const std::size_t c = points.size();
+    const int neighbour = at + 1 < c ? points[at + 1] : points[at - 1];
+    const double usual = scene_.distances(points[at], neighbour);
+    // The other links of the sequence bound it, too.
+    Span links;
+    for (std::size_t k = 0; k + (closed ? 0 : 1) < c; ++k)
+        if (k != at && (k + 1 < c ? k + 1 : 0) != at)
+            links.include(scene_.distances(points[k], points[k + 1 < c ? k + 1 : 0]));
+    // The bounds come from other distances: rounding must not lose a point that the exact test would take.
+    const double slack = 1e-12 * scene_.diameter;
+    const double low = std::max(usual - 2 * eps, links.high - eps) - slack;
+    const double high = std::min(usual + 2 * eps, links.low + eps) + slack;
     bool found = false;
-    visit_shell(neighbour, low, high, [&](int q, double d) {
-        found = scene_.label(q) == scene_.label(points[at]) && std::abs(d - usual) <= 2 * eps &&
-                fits_in_place(points, closed, at, q, eps) &&
-                std::find(points.begin(), points.end(), q) == points.end();
-        if (found) {
-            replaced_ = points[at];
-            twin_[static_cast<std::size_t>(replaced_)] = q;
-        }
+    scene_.distances.visit_shell(neighbour, low, high, [&](int q, double) {
+        found = scene_.label(q) == scene_.label(neighbour) && q != points[at] &&
+                fits_in_place(points, closed, at, q, eps);
         return !found;
     });
     return found;
 }
 
-bool ChainOracle::fits_in_place(std::span<const int> points, bool closed, std::size_t at, int point,
-                                double eps) {
-    const auto d = scene_.distances.row(point);
-    const std::size_t c = points.size();
-    spans_.resize(rest_.size());
+/// Can the outside point q stand in the place `at`, with the tolerance eps valid?
+bool ChainOracle::fits_in_place(std::span<const int> points, bool closed, std::size_t at, int q, double eps) {
+    const auto d = scene_.distances.row(q);
+    const std::size_t neighbour = at + 1 < points.size() ? at + 1 : at - 1;
+    const double usual = scene_.distances(points[at], points[neighbour]);
+    if (std::abs(d[static_cast<std::size_t>(points[neighbour])] - usual) > 2 * eps) return false;
+    if (std::find(points.begin(), points.end(), q) != points.end()) return false;
+    const ToleranceInterval other = points.size() <= kShortSequence
+                                        ? short_interval_with(points, closed, at, q, eps)
+                                        : long_interval_with(points, closed, at, q, eps);
+    if (!(other.min <= eps && eps < other.max)) return false;
+    replaced_ = points[at];
+    replaced_by_ = q;
+    return true;
+}
+
+ToleranceInterval ChainOracle::short_interval_with(std::span<const int> points, bool closed, std::size_t at,
+                                                   int q, double limit) const {
+    int other[kShortSequence];
+    std::copy(points.begin(), points.end(), other);
+    other[at] = q;
+    return short_interval_of({other, points.size()}, closed, limit);
+}
+
+/// Sets rest_.
+void ChainOracle::leave_out(std::size_t c, bool closed, std::size_t at) {
+    left_out_ = at;
+    rest_.resize(closed ? c / 2 : c - 1);
     for (std::size_t r = 1; r <= rest_.size(); ++r) {
-        Span span = rest_[r - 1];
-        if (at + r < c)
-            span.include(d[static_cast<std::size_t>(points[at + r])]);
-        else if (closed)
-            span.include(d[static_cast<std::size_t>(points[at + r - c])]);
-        if (at >= r)
-            span.include(d[static_cast<std::size_t>(points[at - r])]);
-        else if (closed)
-            span.include(d[static_cast<std::size_t>(points[at + c - r])]);
-        if (span.spread() > eps) return false;
-        spans_[r - 1] = span;
+        // The two distances of the orbit start at `at` and r places before it.
+        const std::size_t before = at >= r ? at - r : closed ? at + c - r : c;
+        rest_[r - 1] =
+            extremes_[r - 1].without(static_cast<int>(at), before < c ? static_cast<int>(before) : -1);
     }
-    const ToleranceInterval other = tolerance_interval(spans_, scene_.resolution, eps);
-    return other.min <= eps && eps < other.max;
+}
+
+/// The orbits without one point follow from the extremes, so that C2 costs O(c^2) and not O(c^3).
+ToleranceInterval ChainOracle::long_interval_with(std::span<const int> points, bool closed, std::size_t at,
+                                                  int q, double limit) {
+    const auto d = scene_.distances.row(q);
+    const std::size_t c = points.size();
+    const auto to = [&](std::size_t k) { return d[static_cast<std::size_t>(points[k])]; };
+    if (at != left_out_) leave_out(c, closed, at);
+    spans_ = rest_;
+    for (std::size_t r = 1; r <= rest_.size(); ++r) {
+        Span& span = spans_[r - 1];
+        if (at + r < c || closed) span.include(to(at + r < c ? at + r : at + r - c));
+        if (at >= r || closed) span.include(to(at >= r ? at - r : at + c - r));
+        if (span.spread() > limit) return {kInfinity, kInfinity};
+    }
+    return tolerance_interval(spans_, scene_.resolution, limit);
 }
 
 }  // namespace insym

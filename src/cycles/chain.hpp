@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "cycles/fourths.hpp"
 #include "cycles/tolerance_interval.hpp"
 #include "scene.hpp"
 
@@ -29,7 +30,12 @@ public:
     }
     /// Orbit r - 1 holds the distances |P_l P_{l+r}|.
     std::span<const Span> orbits() const { return orbits_; }
-    bool contains(int point) const;
+    /// Is it among the points but for the first `skip` from `end`?
+    bool contains(int point, End end, int skip) const {
+        for (int k = skip; k < size(); ++k)
+            if (from(end, k) == point) return true;
+        return false;
+    }
 
 private:
     const Scene* scene_;
@@ -39,19 +45,11 @@ private:
     std::vector<Span> orbits_;
 };
 
-/// A point that a chain can take at an end, and E_min of the longer chain.
-struct Candidate {
-    double tolerance = 0;
-    int point = 0;
-    friend auto operator<=>(const Candidate&, const Candidate&) = default;
-};
-
 /// Answers the questions of sections 2 to 4 about chains and cycles. Holds scratch memory: one for
 /// each thread.
 class ChainOracle {
 public:
-    explicit ChainOracle(const Scene& scene)
-        : scene_(scene), twin_(static_cast<std::size_t>(scene.size()), -1) {}
+    ChainOracle(const Scene& scene, const Fourths& fourths) : scene_(scene), fourths_(fourths) {}
 
     const Scene& scene() const { return scene_; }
 
@@ -64,37 +62,25 @@ public:
     /// C2: no outside point can replace a point of the sequence with E_min still valid.
     bool unambiguous(std::span<const int> points, bool closed);
 
-    /// Every point that extends `end` with C1 true, least E_min first, ties by index.
+    /// Every point that extends `end` of a chain of three and more with C1 true, least E_min first, ties by
+    /// index.
     void candidates(const Chain& chain, End end, std::vector<Candidate>& out);
-    /// The first of them, or tolerance = infinity and point = -1 if none is within `limit`. `among`: a list
-    /// known to hold all of them, such as the candidates of a part of the chain at the same end.
-    Candidate best_candidate(const Chain& chain, End end, double limit,
-                             const std::vector<Candidate>* among = nullptr);
+    /// The first of them, or tolerance = infinity and point = -1 if none is within `limit`.
+    Candidate best_candidate(const Chain& chain, End end, double limit);
 
 private:
-    /// Visits the points at a distance of [low, high], and a few more: the bounds are computed from
-    /// other distances, so rounding must not lose a point that the exact test after it would take.
     template <class Visit>
-    void visit_shell(int point, double low, double high, Visit visit) const {
-        const double slack = 1e-12 * scene_.diameter;
-        scene_.distances.visit_shell(point, low - slack, high + slack, visit);
-    }
-    template <class Visit>
-    void visit_extensions(const Chain& chain, End end, const std::vector<Candidate>* among, double& limit,
-                          Visit visit);
+    void visit_extensions(const Chain& chain, End end, double& limit, Visit visit);
     void collect_extremes(std::span<const int> points, bool closed);
-    void collect_distances(std::span<const int> points);
-    void leave_out(std::span<const int> points, bool closed, std::size_t at);
     bool replaceable(std::span<const int> points, bool closed, std::size_t at, double eps);
-    bool replaceable_by_twin(std::span<const int> points, bool closed, std::size_t at, double eps);
-    bool fits_in_place(std::span<const int> points, bool closed, std::size_t at, int point, double eps);
-
-    /// How far a new point may be from one of the chain.
-    struct Shell {
-        const double* distances = nullptr;  // of that point
-        double low = 0;
-        double high = 0;
-    };
+    bool replaceable_from_shell(std::span<const int> points, bool closed, std::size_t at, double eps);
+    bool fits_in_place(std::span<const int> points, bool closed, std::size_t at, int q, double eps);
+    ToleranceInterval short_interval_of(std::span<const int> points, bool closed, double limit) const;
+    ToleranceInterval short_interval_with(std::span<const int> points, bool closed, std::size_t at, int q,
+                                          double limit) const;
+    void leave_out(std::size_t c, bool closed, std::size_t at);
+    ToleranceInterval long_interval_with(std::span<const int> points, bool closed, std::size_t at, int q,
+                                         double limit);
 
     /// The distances that lead an orbit from either side, with the places where they start: enough to
     /// know its span without the (at most two) distances of any one point.
@@ -111,14 +97,15 @@ private:
     };
 
     const Scene& scene_;
-    std::vector<Shell> shells_;
-    std::vector<std::size_t> by_length_;
+    const Fourths& fourths_;
+    Fourths::List fourths_scratch_;
+    std::vector<int> inwards_;  // the points of a chain from an end inwards
     std::vector<Span> spans_;
-    std::vector<Span> rest_;  // the orbits without the distances of one point
     std::vector<Extremes> extremes_;
-    std::vector<int> twin_;      // for each point: what could replace it the last time, or -1
-    int replaced_ = -1;          // the point that could be replaced the last time
-    std::vector<double> table_;  // the distances within a short sequence, row by row
+    std::size_t left_out_ = 0;  // the place of a point
+    std::vector<Span> rest_;    // the orbits without the distances of that point
+    int replaced_ = -1;         // the point that could be replaced the last time
+    int replaced_by_ = 0;       // and what by
 };
 
 }  // namespace insym

@@ -1,6 +1,9 @@
 #include "cycles/detect_cycles.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <limits>
+#include <optional>
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -30,41 +33,62 @@ CanonicalCycle canonical(std::span<const int> sequence, bool closed) {
     return {std::move(p), closed};
 }
 
+/// Which seeds have a fourth point from which no cycle was found. Thread-safe.
+class FailedSeeds {
+public:
+    explicit FailedSeeds(const Fourths& fourths) : fourths_(fourths), failed_(fourths.seeds()) {}
+
+    void add(int a, int b, int c) {
+        if (const auto s = fourths_.seed(a, b, c); s >= 0)
+            failed_[static_cast<std::size_t>(s)].store(true, std::memory_order_relaxed);
+    }
+    /// Also true if the seed has no fourth point, or if that is not known.
+    bool contains(int a, int b, int c) const {
+        const auto s = fourths_.seed(a, b, c);
+        return s < 0 || failed_[static_cast<std::size_t>(s)].load(std::memory_order_relaxed);
+    }
+
+private:
+    const Fourths& fourths_;
+    std::vector<std::atomic<bool>> failed_;
+};
+
 /// The expansion of section 4. What it finds depends on the seed alone, never on what was asked
 /// before: the memo only saves time. One for each thread.
 class Expansion {
 public:
-    Expansion(const Scene& scene, RunMonitor& monitor)
+    Expansion(const Scene& scene, const Fourths& fourths, FailedSeeds& failed, RunMonitor& monitor)
         : scene_(scene),
+          fourths_(fourths),
+          failed_(failed),
           monitor_(monitor),
-          oracle_(scene),
+          oracle_(scene, fourths),
           type_oracle_(scene),
           chain_(scene),
           extended_(scene) {}
 
-    void expand_apex(int apex);
+    /// Every chain of four whose second point is `apex`, met once: from its end with the smaller index.
+    void expand_fours(int apex);
+    /// The seeds about `apex` that close or from which the chains of four find nothing; after all of those.
+    void resolve_seeds(int apex);
 
     std::size_t seeds() const { return seeds_; }
     std::vector<std::pair<CanonicalCycle, TypeSet>>& found() { return found_; }
 
 private:
-    void expand_seed(std::span<const int> seed);
-    /// For each end: a list that holds all candidates of a chain there, or none where it is not known.
-    struct Ends {
-        const std::vector<Candidate>* left = nullptr;
-        const std::vector<Candidate>* right = nullptr;
-    };
-    static constexpr int kLeft = 0;
-    static constexpr int kRight = 1;
-
-    bool expand_chain(std::span<const int> four);
-    bool expand_side(std::span<const int> four, const std::vector<Candidate>& fifths,
-                     const std::vector<Candidate>& far);
-    bool follow(std::span<const int> start, Ends ends);
-    bool follow_path(Ends ends);
-    std::pair<Candidate, Candidate> best_ends(double limit, Ends ends);
-    void add_branch(int left);
+    template <class Visit>
+    void visit_seeds(int apex, Visit visit);
+    bool expand_four(std::span<const int> four);
+    bool expand_side(std::span<const int> four, const std::vector<Candidate>& fifths);
+    using Ends = std::pair<Candidate, Candidate>;  // the best candidates at the left and at the right end
+    bool follow(std::span<const int> start, const std::optional<Ends>& ends = {});
+    bool follow_path(std::optional<Ends> ends);
+    Ends best_ends(double limit);
+    End better_end(const Candidate& left, const Candidate& right) const;
+    bool follow_both(int left, int right);
     bool resolve_open(std::span<const int> chain);
+    bool resolve_open(std::span<const int> chain, ChainMemo::Id id);
+    bool become_cycle(std::span<const int> chain);
     bool resolve_closed(std::span<const int> ring);
     bool keep(std::span<const int> sequence, bool closed);
     bool extend(std::vector<int>& sequence);
@@ -72,35 +96,49 @@ private:
 
     /// Ends tie at every step of an exact row; beyond this length it makes no difference which is first.
     static constexpr int kLongestBranching = 8;
+    /// Shorter chains are met once only.
+    static constexpr std::size_t kShortestRemembered = 5;
 
     using Answer = ChainMemo::Answer;
     static Answer answer(bool found) { return found ? Answer::yes : Answer::no; }
 
-    struct Branch {
-        std::vector<int> points;
-        std::vector<End> path;
+    /// The number of a chain in the memo, or none if it is too short for that.
+    static constexpr ChainMemo::Id kNone = ~ChainMemo::Id{0};
+    ChainMemo::Id remembered(std::span<const int> chain) {
+        return chain.size() < kShortestRemembered ? kNone : memo_.id(chain);
+    }
+
+    /// A chain on the way from a start, and the end at which the next point was added.
+    struct Step {
+        ChainMemo::Id id;
+        End added_at;
     };
 
     const Scene& scene_;
+    const Fourths& fourths_;
+    FailedSeeds& failed_;
     RunMonitor& monitor_;
     ChainOracle oracle_;
     TypeOracle type_oracle_;
     ChainMemo memo_;
     ChainMemo rings_;
     Chain chain_;
-    std::vector<End> path_;  // at which end of chain_ each point after the start was added
-    std::vector<Branch> branches_;
-    std::vector<Candidate> fourths_[2];  // at the left and the right end of the seed
-    std::vector<Candidate> fifths_[2];
+    std::vector<Step> path_;          // from the start to chain_
+    std::optional<bool> four_alone_;  // does the chain of four at hand become a cycle?
+    Fourths::List list_;
+    std::vector<int> fours_;  // the fourth points of a seed
+    std::vector<Candidate> left_fifths_, right_fifths_;
     Chain extended_;
     std::vector<Candidate> extensions_;
+    std::vector<ChainMemo::Id> passed_;
     std::size_t seeds_ = 0;
     std::vector<std::pair<CanonicalCycle, TypeSet>> found_;
 };
 
-/// Every seed (A, B, C) with B = apex: A and C are at nearly the same distance, so each A looks only
-/// at the few that follow it in B's list by distance.
-void Expansion::expand_apex(int apex) {
+/// Calls visit(a, c) for every seed (a, apex, c) with a < c: a and c are at nearly the same distance, so each
+/// a looks only at the few that follow it in the list by distance.
+template <class Visit>
+void Expansion::visit_seeds(int apex, Visit visit) {
     const auto d = scene_.distances.row(apex);
     const auto others = scene_.distances.nearest_first(apex);
     for (std::size_t i = 0; i < others.size(); ++i) {
@@ -112,58 +150,61 @@ void Expansion::expand_apex(int apex) {
             if (far - near > scene_.max_tolerance) break;
             const auto [a, c] = std::minmax(others[i], others[j]);
             const int seed[] = {a, apex, c};
-            if (!oracle_.holds(seed, false)) continue;
-            ++seeds_;
-            // An equilateral triangle closes at once; it is met from all three apexes.
-            if (apex < a && oracle_.holds(seed, true)) resolve_closed(seed);
-            expand_seed(seed);
+            if (oracle_.holds(seed, false)) visit(a, c);
         }
     }
 }
 
-/// Branches over every fourth point at either end. A path on which nothing is unambiguous and has a type
-/// falls back to the chain of four and then to the seed.
-void Expansion::expand_seed(std::span<const int> seed) {
-    chain_.assign(seed);
-    oracle_.candidates(chain_, End::right, fourths_[kRight]);
-    oracle_.candidates(chain_, End::left, fourths_[kLeft]);
-    bool found = !fourths_[kRight].empty() && !fourths_[kLeft].empty();
-    for (const Candidate& fourth : fourths_[kRight]) {
-        const int four[] = {seed[0], seed[1], seed[2], fourth.point};
-        found = expand_chain(four) && found;
-    }
-    for (const Candidate& fourth : fourths_[kLeft]) {
-        const int four[] = {fourth.point, seed[0], seed[1], seed[2]};
-        found = expand_chain(four) && found;
-    }
-    if (!found) resolve_open(seed);
+void Expansion::expand_fours(int apex) {
+    const auto expand = [&](int a, int c) {
+        const auto fourths = fourths_.of(a, apex, c, list_);
+        fours_.clear();
+        for (const Candidate& d : fourths)
+            if (a < d.point) fours_.push_back(d.point);
+        for (const int d : fours_) {
+            const int four[] = {a, apex, c, d};
+            if (expand_four(four)) continue;
+            failed_.add(a, apex, c);
+            failed_.add(d, c, apex);
+        }
+    };
+    visit_seeds(apex, [&](int a, int c) {
+        ++seeds_;
+        expand(a, c);
+        expand(c, a);
+    });
+}
+
+/// A path on which nothing is unambiguous and has a type falls back to the chain of four and then to the
+/// seed.
+void Expansion::resolve_seeds(int apex) {
+    visit_seeds(apex, [&](int a, int c) {
+        const int seed[] = {a, apex, c};
+        // An equilateral triangle closes at once; it is met from all three apexes.
+        if (apex < a && oracle_.holds(seed, true)) resolve_closed(seed);
+        if (failed_.contains(a, apex, c) || failed_.contains(c, apex, a)) resolve_open(seed);
+    });
 }
 
 /// In 3D also branches over the best fifth point at either end on each side of the plane of the three
 /// points there. True if every branch found a cycle, be it the chain of four itself.
-bool Expansion::expand_chain(std::span<const int> four) {
-    const ChainMemo::Id id = memo_.id(four);
-    if (const auto known = memo_[id].all; known != Answer::unknown) return known == Answer::yes;
-    Ends ends;
-    if (scene_.dimension() == 3) {
-        chain_.assign(four);
-        oracle_.candidates(chain_, End::right, fifths_[kRight]);
-        oracle_.candidates(chain_, End::left, fifths_[kLeft]);
-        ends = {&fifths_[kLeft], &fifths_[kRight]};
-    }
-    bool found = follow(four, ends);
+bool Expansion::expand_four(std::span<const int> four) {
+    chain_.assign(four);
+    oracle_.candidates(chain_, End::right, right_fifths_);
+    oracle_.candidates(chain_, End::left, left_fifths_);
+    constexpr Candidate kNobody{std::numeric_limits<double>::infinity(), -1};
+    const auto best = [&](const auto& list) { return list.empty() ? kNobody : list.front(); };
+    four_alone_.reset();
+    bool found = follow(four, Ends{best(left_fifths_), best(right_fifths_)});
     if (scene_.dimension() == 3) {
         const int reversed[] = {four[3], four[2], four[1], four[0]};
-        // What can come at the far end is known from the chain of four; at the near end it is not.
-        found = expand_side(four, fifths_[kRight], fifths_[kLeft]) && found;
-        found = expand_side(reversed, fifths_[kLeft], fifths_[kRight]) && found;
+        found = expand_side(four, right_fifths_) && found;
+        found = expand_side(reversed, left_fifths_) && found;
     }
-    memo_[id].all = answer(found);
     return found;
 }
 
-bool Expansion::expand_side(std::span<const int> four, const std::vector<Candidate>& fifths,
-                            const std::vector<Candidate>& far) {
+bool Expansion::expand_side(std::span<const int> four, const std::vector<Candidate>& fifths) {
     bool found = true;
     bool taken[3] = {false, false, false};
     for (const Candidate& fifth : fifths) {
@@ -171,7 +212,7 @@ bool Expansion::expand_side(std::span<const int> four, const std::vector<Candida
         if (done) continue;
         done = true;
         const int five[] = {four[0], four[1], four[2], four[3], fifth.point};
-        if (!follow(five, {&far, nullptr}) && !resolve_open(four)) found = false;
+        if (!follow(five) && !resolve_open(four)) found = false;
     }
     return found;
 }
@@ -189,114 +230,114 @@ int Expansion::side(std::span<const int> chain, int point) const {
 }
 
 /// Adds the point of least E_min at either end until the chain closes at no greater tolerance or
-/// nothing fits; keeps the longest chain met that is unambiguous and has a type. True if there is
-/// one on every branch: where both ends are equally good, a chain and its reverse part ways, and both
-/// are followed.
-bool Expansion::follow(std::span<const int> start, Ends ends) {
+/// nothing fits; keeps the longest chain met that is unambiguous and has a type. True if there is one.
+/// `ends`: those of `start`, if known.
+bool Expansion::follow(std::span<const int> start, const std::optional<Ends>& ends) {
     chain_.assign(start);
-    path_.clear();
-    branches_.clear();
-    bool found = follow_path(ends);
-    while (!branches_.empty()) {
-        const Branch branch = std::move(branches_.back());
-        branches_.pop_back();
-        chain_.assign(branch.points);
-        path_ = branch.path;
-        found = follow_path({}) && found;
-    }
-    return found;
+    return follow_path(ends);
 }
 
-/// One branch, from chain_ on; path_ says how chain_ came from the start. What follows depends on the
-/// chain alone, so chains met before end it.
-bool Expansion::follow_path(Ends ends) {
+/// The same from chain_ on. What follows depends on the chain alone, so chains met before end it.
+bool Expansion::follow_path(std::optional<Ends> ends) {
+    const std::size_t first_step = path_.size();
     bool found = false;
-    const int known_size = chain_.size();
     while (true) {
-        const ChainMemo::Id id = memo_.id(chain_.points());
-        if (const auto known = memo_[id].path; known != Answer::unknown) {
+        const ChainMemo::Id id = remembered(chain_.points());
+        if (const auto known = id != kNone ? memo_[id].path : Answer::unknown; known != Answer::unknown) {
             found = known == Answer::yes;
             break;
         }
-        if (monitor_.should_stop()) return true;
+        if (monitor_.should_stop()) {
+            path_.resize(first_step);
+            return true;
+        }
         const double closed = oracle_.closed_tolerance(chain_);
-        const auto [right, left] = best_ends(std::min(closed, scene_.max_tolerance), ends);
+        const auto [left, right] = ends ? *ends : best_ends(std::min(closed, scene_.max_tolerance));
+        ends.reset();
         const double best = std::min(right.tolerance, left.tolerance);
         const bool closes = closed <= std::min(best, scene_.max_tolerance);
-        if (closes || best > scene_.max_tolerance) {
-            found = (closes && resolve_closed(chain_.points())) || resolve_open(chain_.points());
-            memo_[id].path = answer(found);
+        const bool ends_here = closes || best > scene_.max_tolerance;
+        const bool parts = right.tolerance == left.tolerance && chain_.size() <= kLongestBranching;
+        if (ends_here || parts) {
+            found =
+                ends_here ? closes && resolve_closed(chain_.points()) : follow_both(left.point, right.point);
+            found = found || resolve_open(chain_.points(), id);
+            if (id != kNone) memo_[id].path = answer(found);
             break;
         }
-        if (right.tolerance == left.tolerance && chain_.size() <= kLongestBranching) add_branch(left.point);
-        const bool to_right = right.tolerance == best;
-        chain_.add(to_right ? right.point : left.point, to_right ? End::right : End::left);
-        path_.push_back(to_right ? End::right : End::left);
-        // The end that moved on has new neighbours.
-        (to_right ? ends.right : ends.left) = nullptr;
+        const End to = better_end(left, right);
+        path_.push_back({id, to});
+        chain_.add(to == End::right ? right.point : left.point, to);
     }
     // Back along the path, each chain a window of the last.
     std::span<const int> window = chain_.points();
-    for (; !path_.empty(); path_.pop_back()) {
-        window = path_.back() == End::right ? window.first(window.size() - 1) : window.subspan(1);
-        if (found && static_cast<int>(window.size()) < known_size) break;
-        found = found || resolve_open(window);
-        if (auto& known = memo_[memo_.id(window)].path; known == Answer::unknown) known = answer(found);
+    for (; path_.size() > first_step; path_.pop_back()) {
+        const auto [id, added_at] = path_.back();
+        window = added_at == End::right ? window.first(window.size() - 1) : window.subspan(1);
+        found = found || resolve_open(window, id);
+        if (id != kNone) memo_[id].path = answer(found);
     }
     return found;
 }
 
-/// The best candidates at the right and at the left end within `limit`. The end that is quickly asked goes
-/// first: what it offers limits the other.
-std::pair<Candidate, Candidate> Expansion::best_ends(double limit, Ends ends) {
-    const bool left_first = ends.left != nullptr;
-    const End first = left_first ? End::left : End::right;
-    const Candidate one = oracle_.best_candidate(chain_, first, limit, left_first ? ends.left : ends.right);
-    const Candidate other =
-        oracle_.best_candidate(chain_, left_first ? End::right : End::left, std::min(limit, one.tolerance),
-                               left_first ? ends.right : ends.left);
-    return left_first ? std::pair(other, one) : std::pair(one, other);
+/// The end with the better candidate, in a way that does not depend on which end is called left: what is
+/// remembered of a chain holds for its reverse.
+End Expansion::better_end(const Candidate& left, const Candidate& right) const {
+    if (left != right) return right < left ? End::right : End::left;
+    return chain_.points().front() < chain_.points().back() ? End::right : End::left;
 }
 
-void Expansion::add_branch(int left) {
-    Branch branch;
-    branch.points = {left};
-    const auto points = chain_.points();
-    branch.points.insert(branch.points.end(), points.begin(), points.end());
-    branch.path = path_;
-    branch.path.push_back(End::left);
-    branches_.push_back(std::move(branch));
+/// Where both ends are equally good, a chain and its reverse part ways, and both are followed: true if there
+/// is a cycle on both.
+bool Expansion::follow_both(int left, int right) {
+    const std::vector<int> here(chain_.points().begin(), chain_.points().end());
+    chain_.add(right, End::right);
+    const bool found = follow_path({});
+    chain_.assign(here);
+    chain_.add(left, End::left);
+    const bool found_left = follow_path({});
+    chain_.assign(here);
+    return found && found_left;
 }
 
-/// C2, then C3 by extension, then the types. True if a cycle came out. Each longer chain met on the way
-/// would come to the same end, so one answer serves them all.
+/// What the second end offers counts only if it is as good as the first.
+Expansion::Ends Expansion::best_ends(double limit) {
+    const Candidate right = oracle_.best_candidate(chain_, End::right, limit);
+    return {oracle_.best_candidate(chain_, End::left, std::min(limit, right.tolerance)), right};
+}
+
 bool Expansion::resolve_open(std::span<const int> chain) {
-    const ChainMemo::Id id = memo_.id(chain);
-    if (const auto known = memo_[id].alone; known != Answer::unknown) return known == Answer::yes;
-    if (!oracle_.unambiguous(chain, false)) {
-        memo_[id].alone = Answer::no;
-        return false;
+    return resolve_open(chain, remembered(chain));
+}
+
+/// Does this chain by itself become a cycle? `id`: its number in the memo.
+bool Expansion::resolve_open(std::span<const int> chain, ChainMemo::Id id) {
+    passed_.clear();
+    if (id != kNone) {
+        if (const auto known = memo_[id].alone; known != Answer::unknown) return known == Answer::yes;
+        passed_.push_back(id);
+    } else if (chain.size() == 4 && four_alone_) {
+        return *four_alone_;
     }
+    const bool found = oracle_.unambiguous(chain, false) && become_cycle(chain);
+    for (const ChainMemo::Id p : passed_) memo_[p].alone = answer(found);
+    if (chain.size() == 4) four_alone_ = found;
+    return found;
+}
+
+/// C3 by extension, then the types. True if a cycle came out. Each longer chain met on the way
+/// would come to the same end, so one answer serves them all: passed_.
+bool Expansion::become_cycle(std::span<const int> chain) {
     std::vector<int> s(chain.begin(), chain.end());
     if (s.front() > s.back()) std::reverse(s.begin(), s.end());
-    std::vector<ChainMemo::Id> passed = {id};
-    bool found = false;
-    for (bool open = true; open;) {
-        if (!extend(s)) {
-            found = keep(s, false);
-            open = false;
-        } else if (oracle_.holds(s, true) && oracle_.unambiguous(s, true)) {
-            found = keep(s, true);
-            open = false;
-        } else {
-            passed.push_back(memo_.id(s));
-            const auto known = memo_[passed.back()].alone;
-            found = known == Answer::yes;
-            open = known == Answer::unknown;
-        }
+    while (extend(s)) {
+        if (oracle_.holds(s, true) && oracle_.unambiguous(s, true)) return keep(s, true);
+        const ChainMemo::Id id = remembered(s);
+        if (id == kNone) continue;
+        if (const auto known = memo_[id].alone; known != Answer::unknown) return known == Answer::yes;
+        passed_.push_back(id);
     }
-    for (const ChainMemo::Id p : passed) memo_[p].alone = answer(found);
-    return found;
+    return keep(s, false);
 }
 
 /// A ring is met from each of its points and in both directions; asked once.
@@ -342,10 +383,17 @@ bool Expansion::extend(std::vector<int>& sequence) {
 }  // namespace
 
 CycleSearchResult detect_cycles(const Scene& scene, RunMonitor& monitor) {
-    monitor.begin_stage("cycles", static_cast<std::size_t>(scene.size()));
-    tbb::enumerable_thread_specific<Expansion> expansions([&] { return Expansion(scene, monitor); });
+    monitor.begin_stage("cycles", 2 * static_cast<std::size_t>(scene.size()));
+    const Fourths fourths(scene, monitor);
+    FailedSeeds failed(fourths);
+    tbb::enumerable_thread_specific<Expansion> expansions(
+        [&] { return Expansion(scene, fourths, failed, monitor); });
     parallel_for(scene.size(), [&](int apex) {
-        expansions.local().expand_apex(apex);
+        expansions.local().expand_fours(apex);
+        monitor.advance();
+    });
+    parallel_for(scene.size(), [&](int apex) {
+        expansions.local().resolve_seeds(apex);
         monitor.advance();
     });
 
@@ -360,7 +408,7 @@ CycleSearchResult detect_cycles(const Scene& scene, RunMonitor& monitor) {
                             [](const auto& a, const auto& b) { return a.first == b.first; }),
                 found.end());
 
-    ChainOracle oracle(scene);
+    ChainOracle oracle(scene, fourths);
     result.cycles.reserve(found.size());
     for (auto& [cycle, types] : found) {
         const ToleranceInterval tolerance = oracle.interval(cycle.points, cycle.closed);

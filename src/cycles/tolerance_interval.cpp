@@ -1,67 +1,41 @@
 #include "cycles/tolerance_interval.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace insym {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-void sort_by_low(std::span<Span> spans) {
-    constexpr std::size_t kInsertionSortLimit = 24;
-    const auto lower = [](const Span& a, const Span& b) { return a.low < b.low; };
-    if (spans.size() > kInsertionSortLimit) {
-        std::sort(spans.begin(), spans.end(), lower);
-        return;
-    }
-    for (std::size_t i = 1; i < spans.size(); ++i) {
-        const Span moving = spans[i];
-        std::size_t k = i;
-        for (; k > 0 && moving.low < spans[k - 1].low; --k) spans[k] = spans[k - 1];
-        spans[k] = moving;
-    }
-}
-
-/// Joins neighbours that lie at most `gap` apart; returns how many classes are left.
-std::size_t join_classes(std::span<Span> classes, double gap) {
-    std::size_t last = 0;
-    for (std::size_t i = 1; i < classes.size(); ++i) {
-        if (classes[i].low - classes[last].high <= gap)
-            classes[last].high = std::max(classes[last].high, classes[i].high);
-        else
-            classes[++last] = classes[i];
-    }
-    return last + 1;
+ToleranceInterval interval_of_many(std::span<const Span> spans, double eps, double limit) {
+    for (const Span& span : spans) eps = std::max(eps, span.spread());
+    if (eps > limit) return {detail::kInfinity, detail::kInfinity};
+    std::vector<Span> ends(spans.begin(), spans.end());
+    std::sort(ends.begin(), ends.end(), [](const Span& a, const Span& b) { return a.low < b.low; });
+    // The highest end so far does as well as the sorted ones: where there is a gap, they agree.
+    for (std::size_t i = 1; i < ends.size(); ++i) ends[i].high = std::max(ends[i].high, ends[i - 1].high);
+    return detail::join_classes(ends.data(), ends.size(), eps, limit);
 }
 
 }  // namespace
 
-ToleranceInterval tolerance_interval(std::span<Span> spans, double floor, double limit) {
-    sort_by_low(spans);
-    // Orbits that overlap are one class at any tolerance; mostly the classes then stay apart.
-    double eps = floor;
-    double least_gap = kInfinity;
-    std::size_t last = 0;
-    for (std::size_t i = 1; i < spans.size(); ++i) {
-        const double gap = spans[i].low - spans[last].high;
-        if (gap <= 0) {
-            spans[last].high = std::max(spans[last].high, spans[i].high);
-        } else {
-            eps = std::max(eps, spans[last].spread());
-            least_gap = std::min(least_gap, gap);
-            spans[++last] = spans[i];
-        }
-    }
-    eps = std::max(eps, spans[last].spread());
-    for (std::size_t count = last + 1;;) {
-        if (eps > limit) return {kInfinity, kInfinity};
-        if (eps < least_gap) return {eps, least_gap};
-        count = join_classes(spans.first(count), eps);
-        least_gap = kInfinity;
-        for (std::size_t i = 0; i < count; ++i) {
-            eps = std::max(eps, spans[i].spread());
-            if (i > 0) least_gap = std::min(least_gap, spans[i].low - spans[i - 1].high);
-        }
+ToleranceInterval tolerance_interval(std::span<const Span> spans, double floor, double limit) {
+    switch (spans.size()) {
+        case 1:
+            return detail::interval_of_few<1>(spans.data(), floor, limit);
+        case 2:
+            return detail::interval_of_few<2>(spans.data(), floor, limit);
+        case 3:
+            return detail::interval_of_few<3>(spans.data(), floor, limit);
+        case 4:
+            return detail::interval_of_few<4>(spans.data(), floor, limit);
+        case 5:
+            return detail::interval_of_few<5>(spans.data(), floor, limit);
+        case 6:
+            return detail::interval_of_few<6>(spans.data(), floor, limit);
+        case 7:
+            return detail::interval_of_few<7>(spans.data(), floor, limit);
+        default:
+            return interval_of_many(spans, floor, limit);
     }
 }
 

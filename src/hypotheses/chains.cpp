@@ -99,7 +99,8 @@ private:
         if (across > 2 * step * (1 - 1e-4)) return;
         for (const auto& [x, y] : {std::pair(a, c), std::pair(c, a)})
             distances_.visit_shell(y, step - four_, step + four_, [&, x = x, y = y](int d, double) {
-                if (d != b && d != x && std::abs(distances_(b, d) - across) <= four_ && x < d) four(x, b, y, d);
+                if (d != b && d != x && std::abs(distances_(b, d) - across) <= four_ && x < d)
+                    four(x, b, y, d);
                 return true;
             });
     }
@@ -140,20 +141,24 @@ private:
         const auto n = static_cast<double>(group_.size());
         const double beyond = std::max(fourth, floor()) / cloud_.scene().diameter;
         // As many rings as good are there by chance.
-        add(h, {a, b, c}, off, 4 * n * n * n * off / cloud_.scene().diameter * (triangle ? beyond : 20 * n * beyond * beyond * beyond));
+        add(h, {a, b, c}, off,
+            4 * n * n * n * off / cloud_.scene().diameter *
+                (triangle ? beyond : 20 * n * beyond * beyond * beyond));
     }
 
     double floor() const { return cloud_.scene().resolution; }
 
     void four(int a, int b, int c, int d) {
-        const double off =
-            std::max({std::abs(distances_(a, b) - distances_(b, c)), std::abs(distances_(b, c) - distances_(c, d)),
-                      std::abs(distances_(a, c) - distances_(b, d)), floor()});
-        const double chance = std::pow(static_cast<double>(group_.size()), 4) * 27 * std::pow(off / cloud_.scene().diameter, 3);
+        const double off = std::max({std::abs(distances_(a, b) - distances_(b, c)),
+                                     std::abs(distances_(b, c) - distances_(c, d)),
+                                     std::abs(distances_(a, c) - distances_(b, d)), floor()});
+        const double chance =
+            std::pow(static_cast<double>(group_.size()), 4) * 27 * std::pow(off / cloud_.scene().diameter, 3);
         for (const bool improper : {false, true}) {
             Hypothesis h;
             h.type = improper ? SymmetryType::rotation_reflection : SymmetryType::screw;
-            if (cloud_.dimension() == 2) h.type = improper ? SymmetryType::glide_reflection : SymmetryType::rotation;
+            if (cloud_.dimension() == 2)
+                h.type = improper ? SymmetryType::glide_reflection : SymmetryType::rotation;
             h.map = carry({at(a), at(b), at(c)}, {at(b), at(c), at(d)}, improper);
             if (cloud_.dimension() == 2 && (h.map.linear(2, 2) < 0)) continue;
             add(h, {a, b, c, d}, off, chance);
@@ -199,7 +204,9 @@ public:
         for (int a = 0; a < n && found_.size() < 50 * most; ++a)
             for (int mate = a + 1; mate < n; ++mate)
                 for (int k = 0; k < picks; ++k) {
-                    const int b = picks == n ? k : static_cast<int>((static_cast<long>(k) * n + a * 7 + mate) / picks) % n;
+                    const int b =
+                        picks == n ? k
+                                   : static_cast<int>((static_cast<long>(k) * n + a * 7 + mate) / picks) % n;
                     if (b != a && b != mate) partner(a, mate, b);
                 }
         std::stable_sort(found_.begin(), found_.end(),
@@ -257,7 +264,8 @@ std::vector<Hypothesis> chains(const Cloud& cloud, const SearchGroup& group, dou
     return ChainSearch(cloud, group, reach).run(most);
 }
 
-std::vector<Hypothesis> half_turns(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most) {
+std::vector<Hypothesis> half_turns(const Cloud& cloud, const SearchGroup& group, double reach,
+                                   std::size_t most) {
     if (group.size() < 4 || cloud.dimension() == 2) return {};
     return HalfTurnSearch(cloud, group, reach).run(most);
 }
@@ -268,7 +276,8 @@ std::vector<Hypothesis> frames(const Cloud& cloud, const Vector3d& center, doubl
     const auto shell = [&](int p) {
         std::vector<int> out;
         for (int i = 0; i < n; ++i)
-            if (cloud.label(i) == cloud.label(p) && std::abs(radius(i) - radius(p)) <= reach) out.push_back(i);
+            if (cloud.label(i) == cloud.label(p) && std::abs(radius(i) - radius(p)) <= reach)
+                out.push_back(i);
         return out;
     };
     // The point whose shell is smallest, and the second, across from it, likewise.

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "hypotheses/hypothesis.hpp"
-#include "support/cloud.hpp"
 #include "run_monitor.hpp"
+#include "support/cloud.hpp"
 
 namespace insym {
 
@@ -23,17 +23,20 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, double reach
                              std::size_t most);
 
 /// Half-turns from two pairs A, A' and B, B' with |AB| = |A'B'| and |AB'| = |A'B|.
-std::vector<Hypothesis> half_turns(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most);
+std::vector<Hypothesis> half_turns(const Cloud& cloud, const SearchGroup& group, double reach,
+                                   std::size_t most);
 
-/// Rotations from three points A, B, C with |AB| = |BC|, one of whose neighbours on the ring is there; every other kind
-/// from four with |AB| = |BC| = |CD| and |AC| = |BD|. Short steps first.
+/// Rotations from three points A, B, C with |AB| = |BC|, one of whose neighbours on the ring is there; every
+/// other kind from four with |AB| = |BC| = |CD| and |AC| = |BD|. Short steps first.
 std::vector<Hypothesis> chains(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most);
 
 /// Isometries that leave `center` in place, from the images of two points of the smallest shells about it:
 /// every symmetry of the whole set is among them if that is its centre.
-std::vector<Hypothesis> frames(const Cloud& cloud, const Eigen::Vector3d& center, double reach, std::size_t most);
+std::vector<Hypothesis> frames(const Cloud& cloud, const Eigen::Vector3d& center, double reach,
+                               std::size_t most);
 
 /// The isometry of either determinant that carries triangle abc to def.
-RigidMap carry(const std::array<Eigen::Vector3d, 3>& from, const std::array<Eigen::Vector3d, 3>& to, bool improper);
+RigidMap carry(const std::array<Eigen::Vector3d, 3>& from, const std::array<Eigen::Vector3d, 3>& to,
+               bool improper);
 
 }  // namespace insym

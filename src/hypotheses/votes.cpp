@@ -39,7 +39,8 @@ std::uint64_t key_of(std::int64_t x, std::int64_t y, std::int64_t z) {
         h *= 0x9E3779B97F4A7C15ULL;
         return h ^ (h >> 29);
     };
-    return mix(static_cast<std::uint64_t>(x) + mix(static_cast<std::uint64_t>(y) + mix(static_cast<std::uint64_t>(z))));
+    return mix(static_cast<std::uint64_t>(x) +
+               mix(static_cast<std::uint64_t>(y) + mix(static_cast<std::uint64_t>(z))));
 }
 
 /// Pairs of one label: all of them, or those of the points farthest out with all, and of neighbours in line.
@@ -55,8 +56,8 @@ std::vector<std::pair<int, int>> pairs_of(const Cloud& cloud, std::size_t most) 
         const std::size_t m = members.size();
         // With an anchor at either end of a share 1 - (1 - a)^2 of the pairs.
         const double anchor_share = share >= 1 ? 1 : share / 2;
-        const auto anchors = std::clamp<std::size_t>(static_cast<std::size_t>(anchor_share * static_cast<double>(m)),
-                                                     std::min<std::size_t>(m, 8), m);
+        const auto anchors = std::clamp<std::size_t>(
+            static_cast<std::size_t>(anchor_share * static_cast<double>(m)), std::min<std::size_t>(m, 8), m);
         std::stable_sort(members.begin(), members.end(),
                          [&](int a, int b) { return cloud[a].squaredNorm() < cloud[b].squaredNorm(); });
         std::vector<char> anchor(m, 0);
@@ -138,7 +139,9 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, double reach
     for (const double size : sizes) {
         Cells cells(ballots.size());
         const auto at = [&](const Vector3d& p, int k) { return p[k] / size; };
-        const auto whole = [&](const Vector3d& p, int k) { return static_cast<std::int64_t>(std::floor(at(p, k))); };
+        const auto whole = [&](const Vector3d& p, int k) {
+            return static_cast<std::int64_t>(std::floor(at(p, k)));
+        };
         for (std::size_t b = 0; b < ballots.size(); ++b) {
             const Vector3d& p = ballots[b].place;
             cells.add(key_of(whole(p, 0), whole(p, 1), whole(p, 2)), static_cast<int>(b));
@@ -160,7 +163,8 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, double reach
                 votes += near.count;
                 fullest = std::max(fullest, near.count);
             }
-            if (votes >= 3 && cell.count == fullest) ranked.push_back({votes, static_cast<std::size_t>(cell.first)});
+            if (votes >= 3 && cell.count == fullest)
+                ranked.push_back({votes, static_cast<std::size_t>(cell.first)});
         }
         std::sort(ranked.begin(), ranked.end());
         if (ranked.size() > most) ranked.resize(most);

@@ -21,7 +21,8 @@ struct Surroundings {
     Eigen::Vector3d extent = Eigen::Vector3d::Zero();
 };
 
-/// Points spread over the set by their distance from its middle, so that neither their order nor the pose matters.
+/// Points spread over the set by their distance from its middle, so that neither their order nor the pose
+/// matters.
 std::vector<int> samples(const PointScene& scene) {
     const int n = scene.size();
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();

@@ -1,10 +1,10 @@
 // The chance that a scattered set has a point near a given place (docs/significance.md).
 #pragma once
 
-#include "scene.hpp"
-
 #include <array>
 #include <vector>
+
+#include "scene.hpp"
 
 namespace insym {
 
@@ -19,8 +19,8 @@ public:
 
 private:
     static constexpr int kSteps = 200;
-    double low_ = 0;         // the least reach of the table
-    double log_ratio_ = 0;   // of one step of it
+    double low_ = 0;        // the least reach of the table
+    double log_ratio_ = 0;  // of one step of it
     std::vector<double> chance_;
 };
 

@@ -36,10 +36,10 @@ RigidMap inverse(const RigidMap& f) {
 /// A symmetry with what is asked of it again and again, about the middle of the set.
 struct Item {
     RigidMap map;
-    std::vector<char> carried;   // points on its orbits, or left in place
-    std::vector<int> points;     // on its orbits
-    double slack = 0;            // how well a link says the map
-    double reach = 0;            // of its points from the middle
+    std::vector<char> carried;  // points on its orbits, or left in place
+    std::vector<int> points;    // on its orbits
+    double slack = 0;           // how well a link says the map
+    double reach = 0;           // of its points from the middle
 };
 
 class Implications {
@@ -64,7 +64,8 @@ public:
         const std::size_t step = std::max<std::size_t>(1, a.points.size() / 4);
         for (std::size_t k = 0; k < a.points.size(); k += step)
             if (off(a, other, a.points[k]) > limit) return false;
-        return std::all_of(a.points.begin(), a.points.end(), [&](int p) { return off(a, other, p) <= limit; });
+        return std::all_of(a.points.begin(), a.points.end(),
+                           [&](int p) { return off(a, other, p) <= limit; });
     }
 
     /// The share of a's points that b carries or leaves in place is (nearly) all.
@@ -120,7 +121,8 @@ private:
         for (const Orbit& o : s.cycles) {
             if (o.closed) continue;
             for (const bool forward : {true, false}) {
-                Vector3d place = places_[static_cast<std::size_t>(forward ? o.points.back() : o.points.front())];
+                Vector3d place =
+                    places_[static_cast<std::size_t>(forward ? o.points.back() : o.points.front())];
                 for (int k = 0; k < kSteps; ++k) {
                     place = forward ? out.map(place) : back(place);
                     grid_.visit_ball(to_point(place), 2 * out.slack, [&](int p, double) {
@@ -157,7 +159,8 @@ void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetri
         const Isometry& f = symmetries[k].isometry;
         return std::pair(std::round(f.angle_deg * 1e3), f.step);
     };
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return motion(a) > motion(b); });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return motion(a) > motion(b); });
     for (std::size_t i = 0; i < order.size(); ++i) {
         const std::size_t g = order[i];
         std::vector<RigidMap> powers = all.powers(g, kMostPowers);
@@ -166,7 +169,8 @@ void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetri
         double best = own;
         for (std::size_t k = 0; k < symmetries.size(); ++k) {
             // A half-turn, a mirror or an inversion can be a power as well.
-            if (k == g || symmetries[k].significance > best || (!is_pair_type(symmetries[k].type) && motion(k) < motion(g)))
+            if (k == g || symmetries[k].significance > best ||
+                (!is_pair_type(symmetries[k].type) && motion(k) < motion(g)))
                 continue;
             // A power of a chance is no intent.
             if (own > kShare * symmetries[k].significance || !all.carries(all[g], all[k])) continue;
@@ -196,7 +200,9 @@ void mark_implied(const PointScene& scene, std::vector<Symmetry>& symmetries) {
         const auto found = [&]() -> std::vector<std::size_t> {
             for (const std::size_t g : able)
                 for (std::size_t j = 0; j < powers[g].size(); ++j)
-                    if (all.equal(a, powers[g][j], 2 * a.slack + (2 + 0.5 * static_cast<double>(j / 2)) * all[generators[g]].slack))
+                    if (all.equal(
+                            a, powers[g][j],
+                            2 * a.slack + (2 + 0.5 * static_cast<double>(j / 2)) * all[generators[g]].slack))
                         return {g};
             for (const std::size_t g : able)
                 for (const std::size_t h : able) {

@@ -14,7 +14,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kSameMap = 0.05;  // radians: what two elements of one group are never nearer than, up to order 100
+constexpr double kSameMap =
+    0.05;  // radians: what two elements of one group are never nearer than, up to order 100
 
 /// The turn of an orthogonal map: proper part angle and axis.
 struct Element {
@@ -61,7 +62,8 @@ struct Census {
                 add_turn(e.axis);
             }
         }
-        std::stable_sort(axes.begin(), axes.end(), [](const Axis& a, const Axis& b) { return a.order > b.order; });
+        std::stable_sort(axes.begin(), axes.end(),
+                         [](const Axis& a, const Axis& b) { return a.order > b.order; });
     }
 
     int axes_of(int order) const {
@@ -95,9 +97,11 @@ GroupName uniaxial(const Census& c) {
     const int n = c.axes.front().order;
     const Vector3d axis = c.axes.front().direction;
     const auto across = [&](const Vector3d& v) { return std::abs(v.dot(axis)) < 2 * kSameMap; };
-    const bool dihedral = std::any_of(c.axes.begin() + 1, c.axes.end(), [&](const auto& a) { return across(a.direction); });
-    const bool flat = std::any_of(c.mirrors.begin(), c.mirrors.end(),
-                                  [&](const Vector3d& v) { return std::abs(v.dot(axis)) > std::cos(2 * kSameMap); });
+    const bool dihedral =
+        std::any_of(c.axes.begin() + 1, c.axes.end(), [&](const auto& a) { return across(a.direction); });
+    const bool flat = std::any_of(c.mirrors.begin(), c.mirrors.end(), [&](const Vector3d& v) {
+        return std::abs(v.dot(axis)) > std::cos(2 * kSameMap);
+    });
     const bool upright = std::any_of(c.mirrors.begin(), c.mirrors.end(), across);
     const bool even = n % 2 == 0;
     const std::string name = number(n), twice = number(2 * n);
@@ -129,13 +133,18 @@ RigidMap map_of(const Symmetry& s, const Vector3d& middle) {
 GroupName name_group(const std::vector<Matrix3d>& elements, int dimension) {
     const Census c(elements);
     if (dimension == 2) {
-        const int turns = 1 + static_cast<int>(std::count_if(elements.begin(), elements.end(), [](const Matrix3d& m) {
-            return m.determinant() > 0 && element_of(m).angle > kSameMap;
-        }));
-        const bool mirror = std::any_of(elements.begin(), elements.end(), [](const Matrix3d& m) { return m.determinant() < 0; });
+        const int turns =
+            1 + static_cast<int>(std::count_if(elements.begin(), elements.end(), [](const Matrix3d& m) {
+                return m.determinant() > 0 && element_of(m).angle > kSameMap;
+            }));
+        const bool mirror = std::any_of(elements.begin(), elements.end(),
+                                        [](const Matrix3d& m) { return m.determinant() < 0; });
         const std::string name = number(turns);
         if (!mirror) return {"C" + name, name};
-        return {"D" + name, turns == 1 ? "m" : turns == 2 ? "2mm" : turns % 2 == 0 ? name + "mm" : name + "m"};
+        return {"D" + name, turns == 1       ? "m"
+                            : turns == 2     ? "2mm"
+                            : turns % 2 == 0 ? name + "mm"
+                                             : name + "m"};
     }
     if (c.axes_of(3) >= 4 || c.axes_of(5) >= 6) return cubic(c);
     if (!c.axes.empty()) return uniaxial(c);
@@ -228,15 +237,19 @@ private:
             for (const bool back : {false, true})
                 for (int i = 0; i < scene_.size(); ++i) {
                     const Vector3d& p = places_[static_cast<std::size_t>(i)];
-                    const Vector3d image = back ? Vector3d(c.map.linear.transpose() * (p - c.map.shift)) : c.map(p);
-                    if (!point_near(image, scene_.label(i), 1.5 * c.slack)) c.holes.emplace_back(image, scene_.label(i));
+                    const Vector3d image =
+                        back ? Vector3d(c.map.linear.transpose() * (p - c.map.shift)) : c.map(p);
+                    if (!point_near(image, scene_.label(i), 1.5 * c.slack))
+                        c.holes.emplace_back(image, scene_.label(i));
                 }
             if (c.holes.size() <= 2 * most_slots()) candidates_.push_back(std::move(c));
         }
     }
 
     /// One point may always be lost; more only from many, or any set would be part of a larger one.
-    std::size_t most_slots() const { return std::max<std::size_t>(1, static_cast<std::size_t>(scene_.size()) / 8); }
+    std::size_t most_slots() const {
+        return std::max<std::size_t>(1, static_cast<std::size_t>(scene_.size()) / 8);
+    }
     bool slots_too_many() const { return slots_.size() > most_slots(); }
 
     /// Candidates whose holes agree, best rank first, both ways; then products while these are listed.
@@ -250,9 +263,10 @@ private:
             const double tolerance = std::max(tolerance_, c.slack);
             std::vector<std::pair<Vector3d, int>> slots = slots_;
             for (const auto& [place, label] : c.holes) {
-                const bool known = std::any_of(slots.begin(), slots.end(), [&, p = place, l = label](const auto& s) {
-                    return s.second == l && (s.first - p).norm() <= 3 * tolerance;
-                });
+                const bool known =
+                    std::any_of(slots.begin(), slots.end(), [&, p = place, l = label](const auto& s) {
+                        return s.second == l && (s.first - p).norm() <= 3 * tolerance;
+                    });
                 if (!known) slots.emplace_back(place, label);
             }
             if (slots.size() > most_slots()) continue;

@@ -82,8 +82,22 @@ Json json_of(const Orbit& orbit) {
     return {{"points", orbit.points}, {"closed", orbit.closed}};
 }
 
+std::string_view word(EntityRole role) {
+    constexpr std::array<std::string_view, 5> words = {"", "hole", "boss", "hollow", "round"};
+    return words[static_cast<std::size_t>(role)];
+}
+
+/// What is not known is left out.
 Json json_of(const Entity& entity) {
-    return {{"kind", word(entity.kind)}, {"id", entity.id}, {"geometry", entity.geometry}};
+    Json json = {{"kind", word(entity.kind)}, {"id", entity.id}, {"geometry", entity.geometry}};
+    if (!entity.ids.empty()) json["ids"] = entity.ids;
+    if (entity.role != EntityRole::none) json["role"] = word(entity.role);
+    if (entity.radius) json["radius"] = *entity.radius;
+    if (entity.minor_radius) json["minor_radius"] = *entity.minor_radius;
+    if (entity.length) json["length"] = *entity.length;
+    if (entity.area) json["area"] = *entity.area;
+    if (!entity.part.empty()) json["part"] = entity.part;
+    return json;
 }
 
 Json json_of(const Diagnostic& diagnostic) {

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <ostream>
 #include <string_view>
@@ -223,6 +224,95 @@ std::string deviation_text(const DetectResult& result, const Deviation& deviatio
     return deviation.max <= result.resolution ? "exact" : short_text(deviation.max);
 }
 
+// What a pattern is made of -------------------------------------------------------------------
+
+/// "hole", "holes": what entities of that sort are called.
+struct Noun {
+    std::string one, many;
+    int rank;  ///< the more telling, the less
+};
+
+Noun noun_of(const Entity& entity) {
+    if (entity.kind == EntityKind::vertex) return {"vertex", "vertices", 8};
+    if (entity.kind == EntityKind::edge) {
+        if (entity.geometry == "circle") return {"circle", "circles", 5};
+        return {entity.geometry, entity.geometry + "s", 6};
+    }
+    if (entity.role == EntityRole::hole) return {"hole", "holes", 0};
+    if (entity.role == EntityRole::boss) return {"boss", "bosses", 1};
+    if (entity.role == EntityRole::hollow) return {"hollow", "hollows", 2};
+    if (entity.role == EntityRole::round) return {"round", "rounds", 2};
+    return {entity.geometry, entity.geometry + "s", entity.geometry == "plane" ? 4 : 3};
+}
+
+/// ", radius 3.2 mm": the size that a designer knows an entity by.
+std::string size_text(const Entity& entity, const std::string& unit) {
+    if (entity.minor_radius)
+        return ", radii " + short_text(*entity.radius) + " and " + short_text(*entity.minor_radius) + unit;
+    if (entity.radius) return ", radius " + short_text(*entity.radius) + unit;
+    if (entity.length) return ", length " + short_text(*entity.length) + unit;
+    if (entity.area) return ", area " + short_text(*entity.area) + (unit.empty() ? "" : unit + "²");
+    return "";
+}
+
+/// Says of symmetries which entities their points stand for: "6 of 7 holes, radius 3.2 mm".
+class Makeup {
+public:
+    Makeup(const DetectResult& result, const ReportContext& context)
+        : points_(result.points), unit_(context.unit ? " " + *context.unit : "") {
+        if (points_.entities.empty()) return;
+        for (std::size_t i = 0; i < points_.size(); ++i) ++all_[label(i)];
+    }
+
+    /// The two most telling sorts; nothing where the points are no model's.
+    std::string text(const Symmetry& symmetry) const {
+        if (points_.entities.empty()) return "";
+        std::map<int, Sort> sorts;
+        for (const Orbit& cycle : symmetry.cycles)
+            for (const int point : cycle.points) {
+                const auto i = static_cast<std::size_t>(point);
+                ++sorts.try_emplace(label(i), Sort{i, 0}).first->second.count;
+            }
+        std::vector<Sort> order;
+        for (const auto& [label, sort] : sorts) order.push_back(sort);
+        std::stable_sort(order.begin(), order.end(), [&](const Sort& a, const Sort& b) {
+            return std::pair(noun_of(entity(a)).rank, b.count) < std::pair(noun_of(entity(b)).rank, a.count);
+        });
+        std::string text;
+        constexpr std::size_t kMost = 2;
+        for (std::size_t k = 0; k < std::min(order.size(), kMost); ++k)
+            text += (k == 0 ? "" : "; ") + sort_text(order[k]);
+        return text + (order.size() > kMost ? "; …" : "");
+    }
+
+private:
+    struct Sort {
+        std::size_t example;
+        std::size_t count;
+    };
+
+    const Entity& entity(const Sort& sort) const { return points_.entities[sort.example]; }
+
+    /// Points without labels are of one sort where they are of one kind.
+    int label(std::size_t i) const {
+        return points_.labels.empty() ? static_cast<int>(points_.entities[i].kind) : points_.labels[i];
+    }
+
+    std::string sort_text(const Sort& sort) const {
+        const std::size_t all = all_.at(label(sort.example));
+        const Noun noun = noun_of(entity(sort));
+        const std::string count =
+            std::to_string(sort.count) + (sort.count < all ? " of " + std::to_string(all) : "");
+        return count + " " + (all == 1 ? noun.one : noun.many) + size_text(entity(sort), unit_);
+    }
+
+    const PointSet& points_;
+    std::string unit_;
+    std::map<int, std::size_t> all_;
+};
+
+// The rest ------------------------------------------------------------------------------------
+
 /// What the numbers of the row do not say.
 std::string notes_text(const Symmetry& symmetry) {
     std::string text;
@@ -310,7 +400,8 @@ void write_summary(std::ostream& out, const DetectResult& result, const ReportCo
     const bool vertices = context.points == "vertices";
     out << (context.path == "-" ? "standard input" : printable(context.path)) << ": "
         << count_text(result.points.size(), vertices ? "vertex" : "point", vertices ? "vertices" : "points")
-        << " in " << std::to_string(result.points.dimension) << "D, diameter "
+        << (context.points == "points" || vertices ? "" : " (" + context.points + ")") << " in "
+        << std::to_string(result.points.dimension) << "D, diameter "
         << fixed_text(result.diameter, decimals_for(result.resolution)) << unit << ", lengths equal within "
         << short_text(result.resolution) << unit << '\n'
         << count_text(result.symmetries.size(), "symmetry", "symmetries") << ", "
@@ -334,7 +425,7 @@ std::string_view early_end(RunStatus status) {
 }
 
 std::vector<std::string> row_of(const DetectResult& result, const ReportContext& context,
-                                const Symmetry& symmetry) {
+                                const Makeup& makeup, const Symmetry& symmetry) {
     const GeometryText geometry(result, context, symmetry);
     return {std::to_string(symmetry.id),
             type_text(symmetry.type),
@@ -346,11 +437,12 @@ std::vector<std::string> row_of(const DetectResult& result, const ReportContext&
             percent_text(symmetry.coverage),
             fixed_text(symmetry.significance, 1),
             geometry.place(),
+            makeup.text(symmetry),
             notes_text(symmetry)};
 }
 
 void write_rows(std::ostream& out, const DetectResult& result, const ReportContext& context,
-                std::size_t shown) {
+                const std::vector<const Symmetry*>& shown) {
     const std::string unit = context.unit ? " [" + *context.unit + "]" : "";
     TextTable table({{"#", true},
                      {"type"},
@@ -362,27 +454,100 @@ void write_rows(std::ostream& out, const DetectResult& result, const ReportConte
                      {"coverage", true},
                      {"significance", true},
                      {"where"},
+                     {"made of"},
                      {"notes"}});
-    for (std::size_t i = 0; i < shown; ++i) table.add(row_of(result, context, result.symmetries[i]));
+    const Makeup makeup(result, context);
+    for (const Symmetry* symmetry : shown) table.add(row_of(result, context, makeup, *symmetry));
     table.write(out);
+}
+
+void write_group(std::ostream& out, const DetectResult& result) {
+    if (!result.group || result.group->schoenflies == "C1") return;
+    const PointGroup& group = *result.group;
+    out << "point group " << group.schoenflies << " (" << group.hermann_mauguin << ")";
+    if (group.empty_slots > 0)
+        out << " but for "
+            << count_text(static_cast<std::size_t>(group.empty_slots), "empty slot", "empty slots");
+    out << '\n';
+}
+
+/// A tolerance at which symmetries begin to hold, or turn ambiguous.
+struct Change {
+    double tolerance;
+    int id;
+    bool begins;
+};
+
+std::vector<Change> changes_of(const DetectResult& result) {
+    std::vector<Change> changes;
+    for (const Symmetry& s : result.symmetries) {
+        if (!s.implied_by.empty() || s.significance >= 0) continue;
+        changes.push_back({s.tolerance.min, s.id, true});
+        if (std::isfinite(s.tolerance.max)) changes.push_back({s.tolerance.max, s.id, false});
+    }
+    std::sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
+        return a.tolerance != b.tolerance ? a.tolerance < b.tolerance : a.id < b.id;
+    });
+    return changes;
+}
+
+/// " 1, 2, 3, … (12)" with a word before it; empty without ids.
+std::string ids_text(std::string_view word, const std::vector<int>& ids) {
+    constexpr std::size_t kMost = 6;
+    if (ids.empty()) return "";
+    std::string text(word);
+    for (std::size_t i = 0; i < std::min(ids.size(), kMost); ++i)
+        text += (i == 0 ? " " : ", ") + std::to_string(ids[i]);
+    return ids.size() > kMost ? text + ", … (" + std::to_string(ids.size()) + ")" : text;
 }
 
 }  // namespace
 
-void write_table(std::ostream& out, const DetectResult& result, const ReportContext& context, int limit) {
+void write_levels(std::ostream& out, const DetectResult& result, const ReportContext& context) {
+    constexpr double kTogether = 1.2;  // changes at tolerances nearer than this ratio are one
+    const std::string unit = context.unit ? " [" + *context.unit + "]" : "";
+    const std::vector<Change> changes = changes_of(result);
+    TextTable table({{"tolerance" + unit, true}, {"hold", true}, {"new"}, {"ambiguous"}});
+    std::size_t holding = 0;
+    for (std::size_t k = 0; k < changes.size();) {
+        const double from = changes[k].tolerance;
+        std::vector<int> begin, end;
+        for (double last = from; k < changes.size() && changes[k].tolerance <= last * kTogether; ++k) {
+            last = changes[k].tolerance;
+            (changes[k].begins ? begin : end).push_back(changes[k].id);
+        }
+        holding += begin.size();
+        holding -= end.size();
+        const double to = k < changes.size() ? changes[k].tolerance : std::numeric_limits<double>::infinity();
+        const bool exact = from <= result.resolution * (1 + 1e-9);
+        table.add({(exact ? "exact" : short_text(from)) + " – " + short_text(to), std::to_string(holding),
+                   ids_text("", begin), ids_text("", end)});
+    }
+    out << '\n';
+    table.write(out);
+}
+
+void write_table(std::ostream& out, const DetectResult& result, const ReportContext& context, int limit,
+                 bool all) {
     write_summary(out, result, context);
     out << early_end(result.status);
-    const std::size_t all = result.symmetries.size();
-    if (all == 0) {
+    write_group(out, result);
+    if (result.symmetries.empty()) {
         const bool complete = result.status == RunStatus::complete;
         out << "No symmetries found"
             << (complete ? "; a larger --max-tolerance looks for rougher ones.\n" : " yet.\n");
         return;
     }
-    const std::size_t shown = limit > 0 ? std::min(all, static_cast<std::size_t>(limit)) : all;
+    std::vector<const Symmetry*> rows;
+    for (const Symmetry& s : result.symmetries)
+        if (all || s.implied_by.empty()) rows.push_back(&s);
+    const std::size_t folded = result.symmetries.size() - rows.size();
+    const std::size_t listed = rows.size();
+    if (limit > 0 && listed > static_cast<std::size_t>(limit)) rows.resize(static_cast<std::size_t>(limit));
     out << '\n';
-    write_rows(out, result, context, shown);
-    if (shown < all) out << std::to_string(all - shown) << " more; --limit 0 shows all\n";
+    write_rows(out, result, context, rows);
+    if (rows.size() < listed) out << std::to_string(listed - rows.size()) << " more; --limit 0 shows all\n";
+    if (folded > 0) out << std::to_string(folded) << " that follow from these; --all lists them too\n";
     out << "\ntolerance: from where it holds to where it turns ambiguous; significance: log10 of the number "
            "of\n"
            "symmetries as good that chance would give; the lower, the surer\n";

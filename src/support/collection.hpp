@@ -15,8 +15,8 @@ public:
     /// True if a support that is kept holds all the links that suggest this hypothesis, in one direction.
     bool explains(const Hypothesis& hypothesis) const;
 
-    /// Keeps a support; where one of the same links, or their inverses, is kept already, the more significant stays.
-    /// False if nothing changed.
+    /// Keeps a support; where one of the same links, or their inverses, is kept already, the more significant
+    /// stays. False if nothing changed.
     bool add(Support support);
 
     const std::vector<Support>& supports() const { return supports_; }

@@ -28,7 +28,8 @@ constexpr double kListed = 1;
 double largest_reach(const PointScene& scene, const Significance& significance) {
     constexpr double kChance = 0.12;
     double reach = scene.resolution;
-    while (2 * reach < scene.max_tolerance && significance.background().chance(1.2 * reach) < kChance) reach *= 1.2;
+    while (2 * reach < scene.max_tolerance && significance.background().chance(1.2 * reach) < kChance)
+        reach *= 1.2;
     return std::min(reach, scene.max_tolerance);
 }
 
@@ -45,14 +46,17 @@ public:
         const double reach = gatherer_.reach();
         const std::size_t n = scene_.points.size();
         // So many looks at a point for each source of hypotheses.
-        const auto budget = [&](double looks) { return static_cast<std::size_t>(100 + looks / static_cast<double>(n)); };
+        const auto budget = [&](double looks) {
+            return static_cast<std::size_t>(100 + looks / static_cast<double>(n));
+        };
         monitor_.begin_stage("hypotheses", 6);
         offer(frames(cloud_, Vector3d::Zero(), reach, budget(1e5)));
         constexpr std::size_t kPairs = 300000;
         for (const SymmetryType type :
              {SymmetryType::translation, SymmetryType::mirror, SymmetryType::inversion}) {
             const bool central = type == SymmetryType::inversion && cloud_.dimension() == 2;
-            offer(vote(cloud_, central ? SymmetryType::half_turn : type, reach, kPairs, budget(2e4)), budget(6e4));
+            offer(vote(cloud_, central ? SymmetryType::half_turn : type, reach, kPairs, budget(2e4)),
+                  budget(6e4));
             monitor_.advance();
         }
         constexpr std::size_t kGroup = 400;
@@ -143,7 +147,8 @@ private:
         for (const auto& [from, to] : s.links)
             in[static_cast<std::size_t>(from)] = in[static_cast<std::size_t>(to)] = 1;
         for (int i = 0; i < cloud_.size(); ++i)
-            if ((s.map(cloud_[i]) - cloud_[i]).norm() <= 1.5 * s.tolerance) in[static_cast<std::size_t>(i)] = 1;
+            if ((s.map(cloud_[i]) - cloud_[i]).norm() <= 1.5 * s.tolerance)
+                in[static_cast<std::size_t>(i)] = 1;
         return static_cast<int>(std::count(in.begin(), in.end(), 1));
     }
 
@@ -168,12 +173,14 @@ private:
                     product.linear = f.linear * g.linear;
                     product.shift = f(g.shift);
                     if ((product.linear - Eigen::Matrix3d::Identity()).norm() < 1e-3) continue;
-                    products.push_back(of_map(product.linear.determinant() < 0 ? SymmetryType::rotation_reflection
-                                                                              : SymmetryType::screw,
+                    products.push_back(of_map(product.linear.determinant() < 0
+                                                  ? SymmetryType::rotation_reflection
+                                                  : SymmetryType::screw,
                                               product));
                     if (cloud_.dimension() == 2)
-                        products.back().type = product.linear.determinant() < 0 ? SymmetryType::glide_reflection
-                                                                               : SymmetryType::rotation;
+                        products.back().type = product.linear.determinant() < 0
+                                                   ? SymmetryType::glide_reflection
+                                                   : SymmetryType::rotation;
                 }
             if (products.size() > 20000) break;
             offer(products);

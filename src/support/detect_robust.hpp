@@ -13,8 +13,8 @@ struct RobustResult {
     double max_tolerance = 0;          ///< the largest tolerance looked at, in the input's unit
 };
 
-/// Hypotheses from pairs, chains and frames of points; the support of each; the best of those that rest on the same
-/// links. Memory linear in the points plus the output.
+/// Hypotheses from pairs, chains and frames of points; the support of each; the best of those that rest on
+/// the same links. Memory linear in the points plus the output.
 RobustResult detect_robust(const PointScene& scene, const Significance& significance, TypeSet types,
                            RunMonitor& monitor);
 

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kMostSteps = 12;   // from one run to the next
+constexpr int kMostSteps = 12;  // from one run to the next
 constexpr int kMostOrder = 200;
 
 class Tracer {
@@ -90,10 +90,12 @@ private:
             if (previous(i) < 0 && next(i) >= 0) add(i, false);
         for (int i = 0; i < n; ++i)
             if (next(i) >= 0 && seen[static_cast<std::size_t>(i)] == 0) add(i, true);
-        for (const Orbit& run : pattern_.runs) pattern_.evidence.hits += static_cast<int>(run.points.size()) - 1;
+        for (const Orbit& run : pattern_.runs)
+            pattern_.evidence.hits += static_cast<int>(run.points.size()) - 1;
         run_of_.assign(static_cast<std::size_t>(n), -1);
         for (std::size_t r = 0; r < pattern_.runs.size(); ++r)
-            for (const int i : pattern_.runs[r].points) run_of_[static_cast<std::size_t>(i)] = static_cast<int>(r);
+            for (const int i : pattern_.runs[r].points)
+                run_of_[static_cast<std::size_t>(i)] = static_cast<int>(r);
     }
 
     int point_at(const Vector3d& place, int label) const {
@@ -132,7 +134,8 @@ private:
                 if (done[static_cast<std::size_t>(other)] != 0 || other == static_cast<int>(r)) {
                     --others;
                 } else {
-                    others -= static_cast<int>(pattern_.runs[static_cast<std::size_t>(other)].points.size()) - 1;
+                    others -=
+                        static_cast<int>(pattern_.runs[static_cast<std::size_t>(other)].points.size()) - 1;
                     done[static_cast<std::size_t>(other)] = 1;
                 }
             }
@@ -183,7 +186,8 @@ private:
             if (k == 1 || there == end) return;
             const int run = run_of_[static_cast<std::size_t>(there)];
             // Backwards only to single points: the run before looks forward to this one.
-            const bool start = run < 0 || (forward && pattern_.runs[static_cast<std::size_t>(run)].points.front() == there);
+            const bool start =
+                run < 0 || (forward && pattern_.runs[static_cast<std::size_t>(run)].points.front() == there);
             if (!start || reached[static_cast<std::size_t>(there)] != 0) return;
             reached[static_cast<std::size_t>(there)] = 1;
             ++pattern_.evidence.bridged;

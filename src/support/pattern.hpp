@@ -17,11 +17,12 @@ struct Pattern {
     int period = 0;  ///< the least power of the map that moves nothing; 0: none
 };
 
-/// Lays the links out as runs, joins those that lie on one orbit with empty places between (up to twelve, or once round
-/// a ring of whole order), and judges again with the gaps that close. O(links * places looked at).
+/// Lays the links out as runs, joins those that lie on one orbit with empty places between (up to twelve, or
+/// once round a ring of whole order), and judges again with the gaps that close. O(links * places looked at).
 Pattern trace(const Cloud& cloud, const Significance& significance, const Support& support);
 
-/// The least q up to 200 with q turns of `angle` (radians) whole to within q * `slack`, and the turns made; 0: none.
+/// The least q up to 200 with q turns of `angle` (radians) whole to within q * `slack`, and the turns made;
+/// 0: none.
 struct WholeOrder {
     int order = 0;
     int turns = 0;

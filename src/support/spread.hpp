@@ -7,8 +7,8 @@
 
 namespace insym {
 
-/// Exact, at least the resolution; O(points of the orbits squared). Where every link is met within `deviation` and
-/// that is too little to show, the resolution at once.
+/// Exact, at least the resolution; O(points of the orbits squared). Where every link is met within
+/// `deviation` and that is too little to show, the resolution at once.
 double spread(const PointScene& scene, const std::vector<Orbit>& orbits, double deviation);
 
 }  // namespace insym

@@ -125,7 +125,8 @@ std::vector<std::pair<SymmetryType, RigidMap>> simpler_kinds(SymmetryType type, 
 
 Gatherer::Gatherer(const Cloud& cloud, const Significance& significance, double reach)
     : cloud_(cloud), significance_(significance) {
-    for (double level = cloud.scene().resolution; level < reach * (1 - 1e-9); level *= std::numbers::sqrt2) levels_.push_back(level);
+    for (double level = cloud.scene().resolution; level < reach * (1 - 1e-9); level *= std::numbers::sqrt2)
+        levels_.push_back(level);
     levels_.push_back(std::max(reach, cloud.scene().resolution));
 }
 
@@ -176,8 +177,8 @@ Gatherer::Judged Gatherer::judge(SymmetryType type, const Linked& linked, double
     std::vector<int> hits(levels_.size(), 0);
     const auto level_of = [&](double square) {
         const double distance = std::sqrt(square);
-        return static_cast<std::size_t>(
-            std::lower_bound(levels_.begin(), levels_.end() - 1, distance) - levels_.begin());
+        return static_cast<std::size_t>(std::lower_bound(levels_.begin(), levels_.end() - 1, distance) -
+                                        levels_.begin());
     };
     std::vector<char> seen(n, 0);
     for (std::size_t i = 0; i < n; ++i)
@@ -215,14 +216,16 @@ Gatherer::Judged Gatherer::judge(SymmetryType type, const Linked& linked, double
     return best;
 }
 
-RigidMap Gatherer::refit(SymmetryType type, const Linked& linked, double tolerance, const RigidMap& old) const {
+RigidMap Gatherer::refit(SymmetryType type, const Linked& linked, double tolerance,
+                         const RigidMap& old) const {
     std::vector<Link> links;
     const double limit = tolerance * tolerance * (1 + 1e-9);
     for (std::size_t i = 0; i < linked.next.size(); ++i)
         if (linked.next[i] >= 0 && linked.square[i] <= limit)
             links.push_back({cloud_[static_cast<int>(i)], cloud_[linked.next[i]]});
     if (static_cast<int>(links.size()) < least_links(type)) return old;
-    if (type != SymmetryType::rotation || cloud_.dimension() == 2) return fit_of_type(type, links, cloud_.dimension());
+    if (type != SymmetryType::rotation || cloud_.dimension() == 2)
+        return fit_of_type(type, links, cloud_.dimension());
     // Near enough while searching; the exact fit of a turn without a step comes at the end.
     RigidMap map = fit_of_type(SymmetryType::screw, links, cloud_.dimension());
     const Vector3d axis = motion_of(map, false).axis;
@@ -232,7 +235,8 @@ RigidMap Gatherer::refit(SymmetryType type, const Linked& linked, double toleran
 
 /// A hypothesis from near points is inaccurate far away: refit it on twice as far a neighbourhood at a time.
 bool Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map) const {
-    if (!(h.radius > 0) || h.type == SymmetryType::translation || h.type == SymmetryType::inversion) return true;
+    if (!(h.radius > 0) || h.type == SymmetryType::translation || h.type == SymmetryType::inversion)
+        return true;
     Linked linked;
     const double far = cloud_.radius() + h.center.norm();
     for (double radius = 2 * h.radius; radius < far; radius *= 2) {
@@ -291,7 +295,8 @@ std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double wor
         if (wider && wider->significance < best->significance) best = wider;
     }
     Vector3d center = Vector3d::Zero();
-    for (const auto& [from, to] : best->links) center += cloud_[from] / static_cast<double>(best->links.size());
+    for (const auto& [from, to] : best->links)
+        center += cloud_[from] / static_cast<double>(best->links.size());
     double radius = 0;
     for (const auto& [from, to] : best->links) radius = std::max(radius, (cloud_[from] - center).norm());
     for (const auto& [type, plain] :

@@ -33,7 +33,8 @@ public:
     Gatherer(const Cloud& cloud, const Significance& significance, double reach);
 
     /// Grows the support of a hypothesis outward from its points, refits it, takes the tolerance at which it
-    /// is most significant and the simplest kind that explains as much. Nothing where that stays above `worst`.
+    /// is most significant and the simplest kind that explains as much. Nothing where that stays above
+    /// `worst`.
     std::optional<Support> gather(const Hypothesis& hypothesis, double worst) const;
 
     const std::vector<double>& levels() const { return levels_; }

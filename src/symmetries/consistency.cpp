@@ -91,26 +91,37 @@ public:
             return std::tie(a.from, a.to, a.member, a.reversed) <
                    std::tie(b.from, b.to, b.member, b.reversed);
         });
-        for (std::size_t k = 0; k < starts_.size(); ++k)
-            if (k == 0 || starts_[k].from != starts_[k - 1].from || starts_[k].to != starts_[k - 1].to)
-                groups_.push_back(k);
-        groups_.push_back(starts_.size());
+        for (const Start& start : starts_) {
+            if (links_.empty() || links_.back().from != start.from || links_.back().to != start.to)
+                links_.push_back({start.from, start.to, 0, start.member});
+            ++links_.back().count;
+            links_.back().last_member = std::max(links_.back().last_member, start.member);
+        }
     }
 
     /// Calls visit(start) for all strands of members after `first` whose first link passes `carried`.
     template <class Carried, class Visit>
     void visit_carried(int first, Carried carried, Visit visit) const {
-        for (std::size_t g = 0; g + 1 < groups_.size(); ++g) {
-            const Start& head = starts_[groups_[g]];
-            if (starts_[groups_[g + 1] - 1].member <= first || !carried(head.from, head.to)) continue;
-            for (std::size_t k = groups_[g]; k < groups_[g + 1]; ++k)
-                if (starts_[k].member > first) visit(starts_[k]);
+        std::size_t k = 0;
+        for (const DistinctLink& link : links_) {
+            const std::size_t end = k + static_cast<std::size_t>(link.count);
+            if (link.last_member > first && carried(link.from, link.to))
+                for (std::size_t i = k; i < end; ++i)
+                    if (starts_[i].member > first) visit(starts_[i]);
+            k = end;
         }
     }
 
 private:
+    struct DistinctLink {
+        int from;
+        int to;
+        int count;  // how many of starts_, one after another
+        int last_member;
+    };
+
     std::vector<Start> starts_;
-    std::vector<std::size_t> groups_;  // where each distinct link begins in starts_, and the end
+    std::vector<DistinctLink> links_;
 };
 
 /// What the type check of a union needs of each member.
@@ -141,7 +152,14 @@ public:
         const Strand p{*members_[static_cast<std::size_t>(first)]};
         const double limit = std::min(scene_.max_tolerance, p.cycle.tolerance.max);
         std::vector<Consistency> passed;
-        const auto carried = [&](int from, int to) { return carries_link(p, from, to, limit); };
+        // Most fail at its first link; that one is asked of all in a tight loop.
+        const auto d_here = scene_.distances.row(p.point(0));
+        const auto d_there = scene_.distances.row(p.point(1));
+        const auto carried = [&](int from, int to) {
+            return std::abs(d_here[static_cast<std::size_t>(from)] - d_there[static_cast<std::size_t>(to)]) <=
+                       limit &&
+                   carries_link(p, from, to, limit);
+        };
         starts_.visit_carried(first, carried, [&](const StartLinks::Start& start) {
             const double tolerance =
                 union_tolerance(p, {*members_[static_cast<std::size_t>(start.member)], start.reversed});

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <tuple>
 
 #include "isometry/fit.hpp"
@@ -104,6 +105,36 @@ SymmetryType central_type(int dimension) {
     return dimension == 3 ? SymmetryType::inversion : SymmetryType::half_turn;
 }
 
+/// For each point, as a set of bits: in which of some thousand steps of distance it has another point, give
+/// or take max_tolerance. Tells at once of most points that no image can be there; the more, the smaller the
+/// tolerance.
+class DistanceSteps {
+public:
+    explicit DistanceSteps(const Scene& scene)
+        : steps_(std::clamp(static_cast<int>(scene.diameter / (2 * scene.max_tolerance)), 1, 8192)),
+          scale_(steps_ / (scene.diameter * (1 + 1e-9))),
+          words_((static_cast<std::size_t>(steps_) + 63) / 64),
+          bits_(static_cast<std::size_t>(scene.size()) * words_) {
+        const double reach = scene.max_tolerance * (1 + 1e-9);
+        parallel_for(scene.size(), [&](int i) {
+            std::uint64_t* own = bits_.data() + static_cast<std::size_t>(i) * words_;
+            for (const double d : scene.distances.row(i))
+                for (int s = step(std::max(0.0, d - reach)); s <= step(d + reach); ++s)
+                    own[s / 64] |= std::uint64_t{1} << (s % 64);
+        });
+    }
+
+    int step(double distance) const { return std::min(static_cast<int>(distance * scale_), steps_ - 1); }
+    const std::uint64_t* of(int i) const { return bits_.data() + static_cast<std::size_t>(i) * words_; }
+    static bool has(const std::uint64_t* bits, int step) { return (bits[step / 64] >> (step % 64) & 1) != 0; }
+
+private:
+    int steps_;
+    double scale_;
+    std::size_t words_;
+    std::vector<std::uint64_t> bits_;
+};
+
 /// What the pairs with one first point gave.
 struct Findings {
     std::vector<PairEdge> mirror_edges;
@@ -117,7 +148,8 @@ struct Findings {
 /// |P2 q| = |P1 image|, each within the cap. Only later points count, so each two pairs meet once.
 class PairSearch {
 public:
-    PairSearch(const Scene& scene, const PointGrid& grid, TypeSet types, int first, Findings& out);
+    PairSearch(const Scene& scene, const PointGrid& grid, const DistanceSteps& steps, TypeSet types,
+               int first, Findings& out);
 
     void search(int second);
 
@@ -140,15 +172,18 @@ private:
 
     const Scene& scene_;
     const PointGrid& grid_;
+    const DistanceSteps& steps_;
     TypeSet types_;
     Findings& out_;
     Pair pair_;
     std::span<const double> a_;  // distances to the first point of the pair
     std::span<const double> b_;  // and to the second
 
-    // The later points with the first one's label, nearest to it first, and a directory of their distances.
+    // The later points, nearest to the first one, and a directory of their distances. They may have another
+    // label: each pair is of one label, a symmetry is not.
     std::vector<int> later_;
     std::vector<double> later_a_;
+    std::vector<int> later_step_;
     std::vector<int> directory_;
     double directory_scale_ = 0;
 
@@ -160,22 +195,27 @@ private:
     std::vector<const Match*> group_;
 };
 
-PairSearch::PairSearch(const Scene& scene, const PointGrid& grid, TypeSet types, int first, Findings& out)
+PairSearch::PairSearch(const Scene& scene, const PointGrid& grid, const DistanceSteps& steps, TypeSet types,
+                       int first, Findings& out)
     : scene_(scene),
       grid_(grid),
+      steps_(steps),
       types_(types),
       out_(out),
       pair_{first, first},
       a_(scene.distances.row(first)) {
     for (const int q : scene.distances.nearest_first(first))
-        if (q > first && scene.label(q) == scene.label(first)) later_.push_back(q);
-    for (const int q : later_) later_a_.push_back(a_[index(q)]);
-    const std::size_t steps = later_.size() + 1;
-    directory_scale_ = static_cast<double>(steps) / (scene.diameter * (1 + 1e-9));
-    directory_.assign(steps + 1, static_cast<int>(later_.size()));
+        if (q > first) later_.push_back(q);
+    for (const int q : later_) {
+        later_a_.push_back(a_[index(q)]);
+        later_step_.push_back(steps.step(a_[index(q)]));
+    }
+    const std::size_t size = later_.size() + 1;
+    directory_scale_ = static_cast<double>(size) / (scene.diameter * (1 + 1e-9));
+    directory_.assign(size + 1, static_cast<int>(later_.size()));
     for (std::size_t k = later_.size(); k-- > 0;)
         directory_[static_cast<std::size_t>(later_a_[k] * directory_scale_)] = static_cast<int>(k);
-    for (std::size_t k = steps; k-- > 0;) directory_[k] = std::min(directory_[k], directory_[k + 1]);
+    for (std::size_t k = size; k-- > 0;) directory_[k] = std::min(directory_[k], directory_[k + 1]);
     leaning_.resize(later_.size());
 }
 
@@ -197,24 +237,30 @@ void PairSearch::search(int second) {
 
 void PairSearch::collect_matches() {
     const double cap = scene_.max_tolerance;
-    // Of q and its image one leans to the first point: q. Stored without a branch, which would be a coin
-    // toss.
+    // Of q and its image one leans to the first point: q. The image is as far from the first point as q is
+    // from the second, and the other way round. Stored without a branch, which would be a coin toss.
+    const std::uint64_t* from_first = steps_.of(pair_.first);
+    const std::uint64_t* from_second = steps_.of(pair_.second);
     std::size_t leaning = 0;
     for (std::size_t k = 0; k < later_.size(); ++k) {
+        const double b = b_[index(later_[k])];
+        const bool leans = later_a_[k] - b <= cap;
+        const bool may_match =
+            DistanceSteps::has(from_first, steps_.step(b)) & DistanceSteps::has(from_second, later_step_[k]);
         leaning_[leaning] = static_cast<int>(k);
-        leaning += later_a_[k] - b_[index(later_[k])] <= cap ? 1 : 0;
+        leaning += leans & may_match ? 1 : 0;
     }
     for (std::size_t l = 0; l < leaning; ++l) {
         const int q = later_[index(leaning_[l])];
         const double a = a_[index(q)], b = b_[index(q)];
         if (q == pair_.second) continue;
-        // The image is as far from the first point as q is from the second.
         std::size_t k = static_cast<std::size_t>(
             directory_[static_cast<std::size_t>(std::max(0.0, b - cap) * directory_scale_)]);
         for (; k < later_.size() && later_a_[k] <= b + cap; ++k) {
             const int image = later_[k];
             const double other_b = b_[index(image)];
-            if (later_a_[k] < b - cap || std::abs(a - other_b) > cap || image == q || image == pair_.second)
+            if (later_a_[k] < b - cap || std::abs(a - other_b) > cap || image == q || image == pair_.second ||
+                scene_.label(image) != scene_.label(q))
                 continue;
             const double lean = a - b, other_lean = later_a_[k] - other_b;
             if (lean > other_lean || (lean == other_lean && q > image)) continue;
@@ -458,10 +504,11 @@ std::vector<PairCluster> detect_pairs(const Scene& scene, TypeSet types, RunMoni
 
     const int n = scene.size();
     const PointGrid grid(scene.points.positions);
+    const DistanceSteps steps(scene);
     std::vector<Findings> findings(static_cast<std::size_t>(n));
     monitor.begin_stage("pairs", static_cast<std::size_t>(n));
     parallel_for(n, [&](int i) {
-        PairSearch search(scene, grid, types, i, findings[static_cast<std::size_t>(i)]);
+        PairSearch search(scene, grid, steps, types, i, findings[static_cast<std::size_t>(i)]);
         for (int j = i + 1; j < n && !monitor.should_stop(); ++j)
             if (scene.label(i) == scene.label(j)) search.search(j);
         monitor.advance();

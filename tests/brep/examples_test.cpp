@@ -34,7 +34,7 @@ const std::vector<std::string> kNames = {"flange",    "slotted_plate", "staggere
                                          "antiprism", "bracket",       "bracket_approximate"};
 
 std::vector<Point> vertices_of(const std::string& name) {
-    return read_model_file((kExamples / (name + ".step")).string()).points.positions;
+    return read_model_file((kExamples / (name + ".step")).string(), test::kVertices).points.positions;
 }
 
 double distance(const Point& p, const Point& q) {

@@ -41,6 +41,7 @@ namespace insym {
 namespace {
 
 using test::box_corners;
+using test::kVertices;
 using test::replaced;
 using test::same_points;
 using test::ScratchFolder;
@@ -95,7 +96,7 @@ std::size_t count_distinct(const std::vector<Point>& points, double share_of_dia
 /// The error of reading that file; the test fails where there is none.
 Error error_of(const std::string& path) {
     try {
-        read_model_file(path);
+        read_model_file(path, kVertices);
     } catch (const Error& error) {
         return error;
     }
@@ -116,7 +117,8 @@ TEST(ReadModel, VerticesComeBackAsTheyWereWritten) {
         vertices.push_back(BRepBuilderAPI_MakeVertex(gp_Pnt(p[0], p[1], p[2])).Vertex());
     }
     const ScratchFolder folder;
-    const Input input = read_model_file(folder.write("points.step", step_text(compound(vertices))));
+    const Input input =
+        read_model_file(folder.write("points.step", step_text(compound(vertices))), kVertices);
     EXPECT_TRUE(same_points(input.points.positions, points, 1e-9));
 }
 
@@ -124,7 +126,7 @@ TEST(ReadModel, VerticesComeBackAsTheyWereWritten) {
 TEST(ReadModel, ABoxHasEightVertices) {
     const ScratchFolder folder;
     const std::string path = folder.write("box.STEP", step_text(make_box({2, 3, 4})));
-    const Input input = read_model_file(path);
+    const Input input = read_model_file(path, kVertices);
     EXPECT_TRUE(same_points(input.points.positions, box_corners({0, 0, 0}, {2, 3, 4}), 1e-12));
     EXPECT_EQ(input.path, path);
     EXPECT_EQ(input.format, "step");
@@ -144,7 +146,7 @@ TEST(ReadModel, IdsFollowTheMapOfVertices) {
     const ScratchFolder folder;
     const std::string path = folder.write(
         "boxes.step", step_text(compound({make_box({1, 2, 3}), make_box({9, 8, 7}).Moved(shift(20, 0, 0))})));
-    const Input input = read_model_file(path);
+    const Input input = read_model_file(path, kVertices);
 
     STEPControl_Reader reader;
     ASSERT_EQ(reader.ReadFile(path.c_str()), IFSelect_RetDone);
@@ -197,7 +199,8 @@ std::string seamless_tube_text() {
 TEST(ReadModel, NoVerticesAreAdded) {
     const ScratchFolder folder;
     const std::string path = folder.write("tube.step", seamless_tube_text());
-    EXPECT_TRUE(same_points(read_model_file(path).points.positions, {{0, 5, 0}, {-5, 0, 10}}, 1e-12));
+    EXPECT_TRUE(
+        same_points(read_model_file(path, kVertices).points.positions, {{0, 5, 0}, {-5, 0, 10}}, 1e-12));
 
     STEPControl_Reader healing;
     ASSERT_EQ(healing.ReadFile(path.c_str()), IFSelect_RetDone);
@@ -222,7 +225,7 @@ class SharedModel : public testing::TestWithParam<Model> {};
 TEST_P(SharedModel, HasTheKnownNumberOfDistinctVertices) {
     const std::filesystem::path path = std::filesystem::path(INSYM_SHARED_DIR) / "data" / GetParam().file;
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
-    const Input input = read_model_file(path.string());
+    const Input input = read_model_file(path.string(), kVertices);
     EXPECT_EQ(count_distinct(input.points.positions, 1e-6), GetParam().distinct_vertices);
     EXPECT_EQ(input.unit, "mm");
 }
@@ -254,7 +257,7 @@ TEST(ReadModel, EveryPlacedOccurrenceOfAPartCounts) {
     const std::string text = step_text(compound(placed));
     ASSERT_THAT(text, HasSubstr("NEXT_ASSEMBLY_USAGE_OCCURRENCE"));
     const ScratchFolder folder;
-    const Input input = read_model_file(folder.write("assembly.step", text));
+    const Input input = read_model_file(folder.write("assembly.step", text), kVertices);
     EXPECT_TRUE(same_points(input.points.positions, expected, 1e-9));
 }
 
@@ -272,7 +275,8 @@ TEST(ReadModel, AssembliesNest) {
                 expected.push_back(p);
     const ScratchFolder folder;
     const Input input = read_model_file(
-        folder.write("nested.step", step_text(compound({pair, pair.Moved(TopLoc_Location(place))}))));
+        folder.write("nested.step", step_text(compound({pair, pair.Moved(TopLoc_Location(place))}))),
+        kVertices);
     EXPECT_TRUE(same_points(input.points.positions, expected, 1e-9));
 }
 
@@ -311,7 +315,8 @@ class DeclaredUnit : public testing::TestWithParam<Unit> {};
 // Oracle: the numbers in the file, which the declaration of the unit does not change.
 TEST_P(DeclaredUnit, CoordinatesAreInTheUnitOfTheFile) {
     const ScratchFolder folder;
-    const Input input = read_model_file(folder.write("box.step", box_text(GetParam().declaration)));
+    const Input input =
+        read_model_file(folder.write("box.step", box_text(GetParam().declaration)), kVertices);
     EXPECT_EQ(input.unit, GetParam().name);
     EXPECT_TRUE(same_points(input.points.positions, box_corners({0, 0, 0}, {2, 3, 4}), 1e-12));
 }
@@ -330,7 +335,7 @@ INSTANTIATE_TEST_SUITE_P(
 // Oracle: arithmetic. A unit without a name of its own is converted to millimetres.
 TEST(ReadModel, AnUnknownUnitIsConvertedToMillimetres) {
     const ScratchFolder folder;
-    const Input input = read_model_file(folder.write("box.step", box_text(by_conversion("7."))));
+    const Input input = read_model_file(folder.write("box.step", box_text(by_conversion("7."))), kVertices);
     EXPECT_EQ(input.unit, "mm");
     EXPECT_TRUE(same_points(input.points.positions, box_corners({0, 0, 0}, {14, 21, 28}), 1e-9));
 }
@@ -344,7 +349,7 @@ TEST(ReadModel, MixedUnitsAreConvertedToMillimetres) {
     ASSERT_NE(last, text.find("SI_UNIT(.MILLI.,.METRE.)"));
     text.replace(last, std::string("SI_UNIT(.MILLI.,.METRE.)").size(), "SI_UNIT($,.METRE.)");
     const ScratchFolder folder;
-    const Input input = read_model_file(folder.write("mixed.step", text));
+    const Input input = read_model_file(folder.write("mixed.step", text), kVertices);
     EXPECT_EQ(input.unit, "mm");
     std::vector<Point> expected = box_corners({0, 0, 0}, {2, 3, 4});
     for (const Point& p : box_corners({0, 0, 500}, {1000, 1000, 1500})) expected.push_back(p);
@@ -425,7 +430,7 @@ TEST(ReadModelErrors, CutAnywhere) {
         EXPECT_EQ(error.code(), ErrorCode::cannot_read) << "cut to " << size << " bytes";
         EXPECT_THAT(error.what(), AllOf(HasSubstr("cut.step"), Not(HasSubstr("\n"))));
     }
-    EXPECT_EQ(read_model_file(folder.write("cut.step", whole.substr(0, end))).points.size(), 8U);
+    EXPECT_EQ(read_model_file(folder.write("cut.step", whole.substr(0, end)), kVertices).points.size(), 8U);
 }
 
 // Oracle: the whole. With an entity of a part lost, the part is refused or still has all its vertices: never
@@ -442,7 +447,8 @@ TEST(ReadModelErrors, AnEntityLost) {
         if (i % 3 == 0) {  // a third of them, to save time
             const std::string path = folder.write("lost.step", whole.substr(0, start) + whole.substr(stop));
             try {
-                EXPECT_EQ(read_model_file(path).points.size(), 8U) << whole.substr(start, stop - start);
+                EXPECT_EQ(read_model_file(path, kVertices).points.size(), 8U)
+                    << whole.substr(start, stop - start);
                 ++accepted;
             } catch (const Error&) {
                 ++refused;
@@ -514,7 +520,7 @@ TEST(ReadModelManners, NothingIsPrinted) {
         const std::string out = testing::internal::GetCapturedStdout();
         return out + testing::internal::GetCapturedStderr();
     };
-    EXPECT_EQ(printed([&] { read_model_file(good); }), "");
+    EXPECT_EQ(printed([&] { read_model_file(good, kVertices); }), "");
     EXPECT_EQ(printed([&] { error_of(bad); }), "");
     EXPECT_NE(printed([&] { STEPControl_Reader().ReadFile(bad.c_str()); }), "");  // its printers are back
 }
@@ -527,7 +533,7 @@ TEST(ReadModelManners, SettingsOfTheProgramDoNotMatter) {
     STEPControl_Reader other;
     ASSERT_EQ(other.ReadFile(path.c_str()), IFSelect_RetDone);
     other.TransferRoots();
-    const Input input = read_model_file(path);
+    const Input input = read_model_file(path, kVertices);
     EXPECT_STREQ(Interface_Static::CVal("xstep.cascade.unit"), "M");
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     EXPECT_EQ(input.unit, "inch");
@@ -544,7 +550,7 @@ TEST(ReadModelManners, CallsMayOverlap) {
     for (int& count : right)
         threads.emplace_back([&] {
             for (int i = 0; i < 10; ++i) {
-                count += read_model_file(good).points.size() == 8 ? 1 : 0;
+                count += read_model_file(good, kVertices).points.size() == 8 ? 1 : 0;
                 try {
                     read_model_file(bad);
                 } catch (const Error&) {
@@ -560,11 +566,12 @@ TEST(ReadModelManners, PathsMayHoldAnyCharacter) {
     const ScratchFolder folder;
     const std::string path =
         folder.write("Teil \xC3\xA4\xC3\xB6 'x' #1.step", step_text(make_box({2, 3, 4})));
-    EXPECT_EQ(read_model_file(path).points.size(), 8U);
+    EXPECT_EQ(read_model_file(path, kVertices).points.size(), 8U);
 }
 
-TEST(IsModelPath, KnowsTheEndingsOfStep) {
-    for (const char* path : {"a.step", "a.stp", "A.STEP", "dir.x/a.Stp", "a.b.step", "a.p21"})
+TEST(IsModelPath, KnowsTheEndings) {
+    for (const char* path : {"a.step", "a.stp", "A.STEP", "dir.x/a.Stp", "a.b.step", "a.p21", "a.iges",
+                             "a.IGS", "a.brep", "a.brp", "a.bbrep"})
         EXPECT_TRUE(is_model_path(path)) << path;
     for (const char* path : {"", "-", "step", ".step/a", "a.xyz", "a.step.txt", "a.stpz", "a.", "dir.step/a"})
         EXPECT_FALSE(is_model_path(path)) << path;

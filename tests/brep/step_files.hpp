@@ -2,6 +2,7 @@
 #pragma once
 
 #include "insym/point_set.hpp"
+#include "insym/read_model.hpp"
 
 #include <filesystem>
 #include <string>
@@ -11,6 +12,9 @@
 class TopoDS_Shape;
 
 namespace insym::test {
+
+/// Points of the vertices alone, without labels.
+inline const ReadModelOptions kVertices = {true, false, false, {LabelBy::none}};
 
 /// A folder that is gone when the test is.
 class ScratchFolder {

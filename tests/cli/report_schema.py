@@ -64,6 +64,16 @@ def check_symmetry(value, n, dimension):
     assert isinstance(value["maximal"], bool) and all(isinstance(i, int) for i in value["implied_by"])
 
 
+def check_entity(entity):
+    """What the schema asks for first, then what is known, in this order."""
+    optional = ["ids", "role", "radius", "minor_radius", "length", "area", "part"]
+    check_keys(entity, ["kind", "id", "geometry"] + [key for key in optional if key in entity])
+    assert entity["kind"] in ("vertex", "edge", "face") and entity["geometry"]
+    assert entity["id"] == min(entity.get("ids", [entity["id"]])) >= 1
+    assert entity.get("role", "hole") in ("hole", "boss", "hollow", "round")
+    assert all(entity[key] >= 0 for key in optional[2:6] if key in entity)
+
+
 def check_report(report):
     check_keys(report, TOP)
     assert report["schema"] == "insym.report/1"
@@ -78,7 +88,7 @@ def check_report(report):
     for name in ("labels", "entities"):
         assert report[name] is None or len(report[name]) == n
     for entity in report["entities"] or []:
-        check_keys(entity, ["kind", "id", "geometry"])
+        check_entity(entity)
     for cycle in report["cycles"]:
         check_keys(cycle, ["points", "closed", "types", "tolerance"])
         check_indices(cycle["points"], n)

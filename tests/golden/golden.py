@@ -41,11 +41,12 @@ def specification(shared, module):
         skip(f"Python's {missing.name} is absent (Debian: python3-{missing.name})")
 
 
-def detect(insym, path, max_tolerance, *more):
-    """The report of method paper on a file; an exception where the program fails."""
+def detect(insym, path, max_tolerance, *more, points="vertices"):
+    """The report of method paper on a file, of a model on its vertices unless told otherwise; an exception
+    where the program fails."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "report.json"
-        command = [insym.resolve(), "detect", path, "--method", "paper", "--json", out, "--quiet",
+        command = [insym.resolve(), "detect", path, "--method", "paper", "--points", points, "--json", out, "--quiet",
                    "--max-tolerance", repr(float(max_tolerance)), *more]
         run = subprocess.run([str(part) for part in command], capture_output=True, text=True)
         if run.returncode != 0:

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """Runs method paper on real and planted models and checks every report against the definitions.
 
-Oracles: check_report.py (the definitions: no violation), and known answers: how many closed cycles of
-which length the vertices of a model hold (shared/data/README.md, the paper's kind of models).
+Oracles: check_report.py (the definitions: no violation), known answers: how many closed cycles of
+which length the vertices of a model hold (shared/data/README.md, the paper's kind of models), and the same
+report from one thread and from all.
 
 Groups of cases, for ctest one entry each: a model's name, `xyz`, `examples`, `plant1`, `plant2`. Without
 --full a report's cycles and symmetries are sampled (check_report's --max); with it nearly all are checked.
@@ -94,6 +95,10 @@ def cases_of(group, options, folder):
     return [(path, 1e-3, None) for path in sorted(Path(folder).glob("case-*.xyz"))]
 
 
+def without_timing(report):
+    return {key: value for key, value in report.items() if key != "timing"}
+
+
 def without_half_turns(report):
     """Half-turns are type C in the report, but come from pairs: check_report's clusters() would take
     them for clusters of the C cycles and call them wrong."""
@@ -120,6 +125,9 @@ def check(checker_module, options, path, max_tolerance, known):
     ran = time.time() - start
     bad, cycles, symmetries = violations(checker_module, report, FULL_SAMPLE if options.full else SAMPLE)
     bad += known(report) if known else []
+    if path.suffix != ".xyz":
+        bad += equal("the report of one thread", without_timing(golden.detect(
+            options.insym, path, max_tolerance, "--threads", "1")) == without_timing(report), True)
     print(f"{path.name} at {max_tolerance:g}: {len(report['points'])} points, {len(report['cycles'])} cycles, "
           f"{len(report['symmetries'])} symmetries, detection {report['timing']['detect_s']:.3f} s, program "
           f"{ran:.2f} s; checked {cycles} and {symmetries} in {time.time() - start - ran:.1f} s: "

@@ -5,6 +5,7 @@
 #include "insym/detect.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <ostream>
@@ -47,7 +48,9 @@ struct Involution {
 
 class BruteForce {
 public:
-    explicit BruteForce(const PointSet& points) : dimension_(points.dimension) {
+    explicit BruteForce(const PointSet& points)
+        : dimension_(points.dimension),
+          labels_(points.labels.empty() ? std::vector<int>(points.size(), 0) : points.labels) {
         for (const Point& p : points.positions) x_.emplace_back(p[0], p[1], p[2]);
         reach_ = 1e-9 * diameter(points.positions);
     }
@@ -104,7 +107,8 @@ private:
             for (int q = 0; q < n; ++q) {
                 if ((at(q) - image).norm() > reach_) continue;
                 if (q == p) ++fixed;
-                if (q > p) pairs.emplace(p, q);
+                if (q > p && labels_[static_cast<std::size_t>(p)] == labels_[static_cast<std::size_t>(q)])
+                    pairs.emplace(p, q);
             }
         }
         const bool covers = 2 * pairs.size() + fixed == x_.size();
@@ -112,6 +116,7 @@ private:
     }
 
     int dimension_;
+    std::vector<int> labels_;
     double reach_ = 0;
     std::vector<Vector3d> x_;
     std::set<std::pair<SymmetryType, PairSet>> found_;
@@ -206,6 +211,40 @@ RC_GTEST_PROP(IncompletePairs, are_those_of_brute_force_and_each_is_listed_once,
                                                *rc::gen::inRange(0, 9), *rc::gen::arbitrary<std::uint64_t>());
     RC_PRE(points.size() > 1U);
     RC_ASSERT(difference_in_any_order(points, BruteForce(points).search()) == "");
+}
+
+// A pair is of one label, a symmetry is not: pairs of all labels make one mirror, centre or half-turn.
+RC_GTEST_PROP(LabelledPairs, are_those_of_brute_force_and_each_is_listed_once, ()) {
+    const SymmetryType type =
+        *rc::gen::element(SymmetryType::mirror, SymmetryType::inversion, SymmetryType::half_turn);
+    const int pairs = *rc::gen::inRange(1, 7);
+    PointSet points = planted_involution(type, pairs, *rc::gen::inRange(0, 5), *rc::gen::inRange(0, 9),
+                                         *rc::gen::arbitrary<std::uint64_t>());
+    RC_PRE(points.size() > 1U);
+    for (int i = 0; i < static_cast<int>(points.size()); ++i) points.labels.push_back(i / 2 % 3);
+    RC_ASSERT(difference_in_any_order(points, BruteForce(points).search()) == "");
+}
+
+// Oracle: points in one place with labels of their own are as good as apart. Each point of a shape is there
+// three times; the pairs of every symmetry of the shape are then there three times, too.
+RC_GTEST_PROP(LabelledPairs, coincident_points_of_different_labels_stay_apart, ()) {
+    const int pairs = *rc::gen::inRange(2, 6);
+    const PointSet once = planted_involution(SymmetryType::mirror, pairs, 2, *rc::gen::inRange(0, 5),
+                                             *rc::gen::arbitrary<std::uint64_t>());
+    PointSet thrice;
+    for (int label = 0; label < 3; ++label)
+        for (const Point& p : once.positions) {
+            thrice.positions.push_back(p);
+            thrice.labels.push_back(label);
+        }
+    const DetectResult result = detect(thrice, exact_options());
+    RC_ASSERT(result.points.size() == thrice.size());
+    const auto is_planted = [&](const Symmetry& s) {
+        return s.type == SymmetryType::mirror && s.cycles.size() == 3 * static_cast<std::size_t>(pairs);
+    };
+    RC_ASSERT(std::any_of(result.symmetries.begin(), result.symmetries.end(), is_planted));
+    for (const Symmetry& s : result.symmetries)
+        RC_ASSERT(std::isfinite(s.significance) && std::isfinite(s.deviation.max));
 }
 
 }  // namespace insym::property

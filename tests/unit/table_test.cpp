@@ -80,6 +80,25 @@ TEST(Table, RowsSayWhatTheSymmetryIs) {
     EXPECT_THAT(text, Not(HasSubstr("e-0")));  // no exponents
 }
 
+TEST(Table, RowsSayWhatTheSymmetryIsMadeOf) {
+    DetectResult result = ring_result();
+    EXPECT_THAT(table_of(result), Not(HasSubstr("made of")));
+    Entity hole{EntityKind::face, 1, "cylinder"};
+    hole.role = EntityRole::hole;
+    hole.radius = 3.2;
+    Entity line{EntityKind::edge, 1, "line"};
+    line.length = 12.5;
+    result.points.entities = {hole, line, hole, line};
+    result.points.labels = {1, 0, 1, 0};
+    result.symmetries[0].cycles = {{{0, 2}, true}, {{1, 3}, true}};
+    result.symmetries[1].cycles = {{{0, 1}, true}};
+    const ReportContext context = {"a.step", "step", "mm", "representative", 0};
+    const std::string text = table_of(result, 0, context);
+    EXPECT_THAT(text, HasSubstr("4 points (representative) in 3D"));
+    EXPECT_THAT(row(text, "1"), HasSubstr("  2 holes, radius 3.2 mm; 2 lines, length 12.5 mm"));
+    EXPECT_THAT(row(text, "2"), HasSubstr("  1 of 2 holes, radius 3.2 mm; 1 of 2 lines, length 12.5 mm"));
+}
+
 TEST(Table, StepsHaveUnits) {
     DetectResult result = ring_result();
     Symmetry& row_of_pins = result.symmetries[0];

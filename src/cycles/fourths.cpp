@@ -1,0 +1,158 @@
+#include "cycles/fourths.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+
+#include "cycles/tolerance_interval.hpp"
+#include "parallel_for.hpp"
+
+namespace insym {
+namespace {
+
+/// E_min of the chain of four with these distances, infinite above `limit`.
+double tolerance_of_four(const Span& links, const Span& steps, double ends, double floor, double limit) {
+    if (links.spread() > limit || steps.spread() > limit) return std::numeric_limits<double>::infinity();
+    std::array<Span, 3> spans = {links, steps, Span{ends, ends}};
+    return tolerance_interval(spans, floor, limit).min;
+}
+
+/// One end of a chain of four: the point, its distance to its neighbour and to the point after that.
+struct Wing {
+    double far = 0;
+    double near = 0;
+    int point = 0;
+};
+
+/// The points that can follow (from, apex) with |apex point| = |from apex|, sorted by their distance to
+/// `from`.
+void wings(const Scene& scene, int from, int apex, std::vector<Wing>& out) {
+    out.clear();
+    const double link = scene.distances(from, apex);
+    const auto to_from = scene.distances.row(from);
+    const double reach = scene.max_tolerance + 1e-12 * scene.diameter;
+    scene.distances.visit_shell(apex, link - reach, link + reach, [&](int q, double near) {
+        if (q != from && scene.label(q) == scene.label(apex))
+            out.push_back({to_from[static_cast<std::size_t>(q)], near, q});
+        return true;
+    });
+    std::sort(out.begin(), out.end(), [](const Wing& x, const Wing& y) { return x.far < y.far; });
+}
+
+}  // namespace
+
+Fourths::Fourths(const Scene& scene, RunMonitor& monitor)
+    : scene_(scene), stored_(true), apexes_(static_cast<std::size_t>(scene.size())) {
+    std::atomic<std::size_t> stored{0};
+    parallel_for(scene.size(), [&](int b) {
+        if (stored.load(std::memory_order_relaxed) > kMostStored || monitor.should_stop()) return;
+        build(b);
+        stored += apexes_[static_cast<std::size_t>(b)].fourths.size();
+    });
+    if (stored > kMostStored || monitor.should_stop()) {
+        stored_ = false;
+        apexes_ = {};
+    }
+    for (Apex& apex : apexes_) {
+        apex.first = seeds_;
+        seeds_ += apex.slots.size();
+    }
+}
+
+void Fourths::build(int b) {
+    Apex& apex = apexes_[static_cast<std::size_t>(b)];
+    std::vector<Slot> seeds;
+    std::vector<Wing> left, right;
+    // The exact test decides; rounding here must lose nothing.
+    const double reach = scene_.max_tolerance + 1e-12 * scene_.diameter;
+    for (int c = 0; c < scene_.size(); ++c) {
+        if (c == b || scene_.label(c) != scene_.label(b)) continue;
+        if (apex.fourths.size() > kMostStored) return;
+        wings(scene_, c, b, left);
+        if (left.empty()) continue;
+        wings(scene_, b, c, right);
+        const double link = scene_.distances(b, c);
+        std::size_t first = 0;
+        for (const Wing& a : left) {
+            while (first < right.size() && right[first].far < a.far - reach) ++first;
+            const std::size_t before = apex.fourths.size();
+            for (std::size_t k = first; k < right.size() && right[k].far <= a.far + reach; ++k) {
+                const Wing& d = right[k];
+                if (d.point == a.point) continue;
+                Span links{link, link}, steps{a.far, a.far};
+                links.include(a.near);
+                links.include(d.near);
+                steps.include(d.far);
+                const double tolerance = tolerance_of_four(links, steps, scene_.distances(a.point, d.point),
+                                                           scene_.resolution, scene_.max_tolerance);
+                if (tolerance <= scene_.max_tolerance) apex.fourths.push_back({tolerance, d.point});
+            }
+            const std::size_t count = apex.fourths.size() - before;
+            if (count == 0) continue;
+            std::sort(apex.fourths.begin() + static_cast<std::ptrdiff_t>(before), apex.fourths.end());
+            seeds.push_back(
+                {a.point, c, static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(count)});
+        }
+    }
+    fill_table(apex, seeds);
+}
+
+void Fourths::fill_table(Apex& apex, const std::vector<Slot>& seeds) const {
+    if (seeds.empty()) return;
+    apex.slots.resize(std::bit_ceil(2 * seeds.size()));
+    const std::size_t mask = apex.slots.size() - 1;
+    for (const Slot& seed : seeds) {
+        std::size_t s = place(seed.a, seed.c, mask);
+        while (apex.slots[s].a >= 0) s = (s + 1) & mask;
+        apex.slots[s] = seed;
+    }
+}
+
+std::span<const Candidate> Fourths::of(int a, int b, int c, List& scratch) const {
+    if (!stored_) {
+        make(a, b, c, scratch);
+        return scratch;
+    }
+    const Slot* slot = find(a, b, c);
+    if (slot == nullptr) return {};
+    return {apexes_[static_cast<std::size_t>(b)].fourths.data() + slot->first, slot->count};
+}
+
+std::ptrdiff_t Fourths::seed(int a, int b, int c) const {
+    if (!stored_) return -1;
+    const Apex& apex = apexes_[static_cast<std::size_t>(b)];
+    const Slot* slot = find(a, b, c);
+    return slot == nullptr ? -1 : static_cast<std::ptrdiff_t>(apex.first) + (slot - apex.slots.data());
+}
+
+const Fourths::Slot* Fourths::find(int a, int b, int c) const {
+    const Apex& apex = apexes_[static_cast<std::size_t>(b)];
+    if (apex.slots.empty()) return nullptr;
+    const std::size_t mask = apex.slots.size() - 1;
+    for (std::size_t s = place(a, c, mask); apex.slots[s].a >= 0; s = (s + 1) & mask)
+        if (apex.slots[s].a == a && apex.slots[s].c == c) return &apex.slots[s];
+    return nullptr;
+}
+
+void Fourths::make(int a, int b, int c, List& list) const {
+    list.clear();
+    const auto& d = scene_.distances;
+    if (scene_.label(a) != scene_.label(b) || scene_.label(c) != scene_.label(b)) return;
+    const double slack = scene_.max_tolerance + 1e-12 * scene_.diameter;
+    Span links{d(a, b), d(a, b)};
+    links.include(d(b, c));
+    d.visit_shell(c, links.high - slack, links.low + slack, [&](int q, double near) {
+        if (q == a || q == b || scene_.label(q) != scene_.label(c)) return true;
+        Span all = links, steps{d(a, c), d(a, c)};
+        all.include(near);
+        steps.include(d(b, q));
+        const double tolerance =
+            tolerance_of_four(all, steps, d(a, q), scene_.resolution, scene_.max_tolerance);
+        if (tolerance <= scene_.max_tolerance) list.push_back({tolerance, q});
+        return true;
+    });
+    std::sort(list.begin(), list.end());
+}
+
+}  // namespace insym

@@ -1,0 +1,130 @@
+#include "mesh/flat_regions.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace insym {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A region smaller than this share of the whole area is not large.
+constexpr double kLeastShare = 1e-4;
+
+/// A neighbour over a smooth edge that has at least this share of a region's area makes it the facet of a
+/// curved face.
+constexpr double kFacetShare = 0.25;
+
+class RegionGrower {
+public:
+    RegionGrower(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges, double flatness)
+        : mesh_(mesh),
+          edges_(edges),
+          flatness_(flatness),
+          region_(mesh.triangles.size(), -1),
+          neighbours_(mesh.triangles.size()) {
+        for (const MeshEdge& edge : edges) {
+            if (edge.triangles[1] < 0) continue;
+            neighbours_[static_cast<std::size_t>(edge.triangles[0])].push_back(edge.triangles[1]);
+            neighbours_[static_cast<std::size_t>(edge.triangles[1])].push_back(edge.triangles[0]);
+        }
+    }
+
+    /// Large triangles first: their planes are the best known.
+    std::vector<FlatRegion> grow_all() {
+        std::vector<int> order(mesh_.triangles.size());
+        std::iota(order.begin(), order.end(), 0);
+        std::vector<double> areas;
+        for (const int t : order) areas.push_back(mesh_.area_vector(t).norm());
+        std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+            return areas[static_cast<std::size_t>(a)] > areas[static_cast<std::size_t>(b)];
+        });
+        std::vector<FlatRegion> regions;
+        for (const int seed : order)
+            if (region_[static_cast<std::size_t>(seed)] < 0)
+                regions.push_back(grow(seed, static_cast<int>(regions.size())));
+        return regions;
+    }
+
+    /// For each region, the area of its largest neighbour over a smooth edge.
+    std::vector<double> smooth_neighbours(const std::vector<FlatRegion>& regions) const {
+        std::vector<double> largest(regions.size(), 0);
+        for (const MeshEdge& edge : edges_) {
+            if (edge.sharp) continue;
+            const auto a = static_cast<std::size_t>(region_[static_cast<std::size_t>(edge.triangles[0])]);
+            const auto b = static_cast<std::size_t>(region_[static_cast<std::size_t>(edge.triangles[1])]);
+            if (a == b) continue;
+            largest[a] = std::max(largest[a], regions[b].area);
+            largest[b] = std::max(largest[b], regions[a].area);
+        }
+        return largest;
+    }
+
+    /// The regions by their first triangles.
+    std::vector<int> order() const {
+        std::vector<int> order;
+        std::vector<char> seen(region_.size(), 0);
+        for (const int region : region_)
+            if (!std::exchange(seen[static_cast<std::size_t>(region)], 1)) order.push_back(region);
+        return order;
+    }
+
+private:
+    FlatRegion grow(int seed, int number) {
+        const Vector3d origin = mesh_.corner(seed, 0), normal = mesh_.area_vector(seed).normalized();
+        FlatRegion region{Vector3d(0, 0, 0), 0};
+        std::vector<int> stack = {seed};
+        region_[static_cast<std::size_t>(seed)] = number;
+        while (!stack.empty()) {
+            const int t = stack.back();
+            stack.pop_back();
+            const double area = mesh_.area_vector(t).norm() / 2;
+            region.area += area;
+            region.centroid += (mesh_.corner(t, 0) + mesh_.corner(t, 1) + mesh_.corner(t, 2)) / 3 * area;
+            for (const int next : neighbours_[static_cast<std::size_t>(t)]) {
+                if (region_[static_cast<std::size_t>(next)] >= 0 || !in_plane(next, origin, normal)) continue;
+                region_[static_cast<std::size_t>(next)] = number;
+                stack.push_back(next);
+            }
+        }
+        if (region.area > 0) region.centroid /= region.area;
+        return region;
+    }
+
+    /// Turned over it would be the other side of a thin sheet.
+    bool in_plane(int triangle, const Vector3d& origin, const Vector3d& normal) const {
+        for (int i = 0; i < 3; ++i)
+            if (std::abs(normal.dot(mesh_.corner(triangle, i) - origin)) > flatness_) return false;
+        return normal.dot(mesh_.area_vector(triangle)) >= 0;
+    }
+
+    const TriangleMesh& mesh_;
+    const std::vector<MeshEdge>& edges_;
+    double flatness_;
+    std::vector<int> region_;  ///< of each triangle
+    std::vector<std::vector<int>> neighbours_;
+};
+
+}  // namespace
+
+std::vector<FlatRegion> find_flat_regions(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges,
+                                          double flatness) {
+    RegionGrower grower(mesh, edges, flatness);
+    const std::vector<FlatRegion> all = grower.grow_all();
+    const std::vector<double> neighbours = grower.smooth_neighbours(all);
+    double whole = 0;
+    for (const FlatRegion& region : all) whole += region.area;
+    std::vector<FlatRegion> kept;
+    for (const int i : grower.order()) {
+        const FlatRegion& region = all[static_cast<std::size_t>(i)];
+        if (region.area >= kLeastShare * whole &&
+            neighbours[static_cast<std::size_t>(i)] < kFacetShare * region.area)
+            kept.push_back(region);
+    }
+    return kept;
+}
+
+}  // namespace insym
