@@ -46,8 +46,8 @@ Fourths::Fourths(const Scene& scene, RunMonitor& monitor)
     : scene_(scene), stored_(true), apexes_(static_cast<std::size_t>(scene.size())) {
     std::atomic<std::size_t> stored{0};
     parallel_for(scene.size(), [&](int b) {
-        if (stored.load(std::memory_order_relaxed) > kMostStored || monitor.should_stop()) return;
-        build(b);
+        if (stored.load(std::memory_order_relaxed) > kMostStored) return;
+        build(b, monitor);
         stored += apexes_[static_cast<std::size_t>(b)].fourths.size();
     });
     if (stored > kMostStored || monitor.should_stop()) {
@@ -60,7 +60,7 @@ Fourths::Fourths(const Scene& scene, RunMonitor& monitor)
     }
 }
 
-void Fourths::build(int b) {
+void Fourths::build(int b, RunMonitor& monitor) {
     Apex& apex = apexes_[static_cast<std::size_t>(b)];
     std::vector<Slot> seeds;
     std::vector<Wing> left, right;
@@ -68,7 +68,7 @@ void Fourths::build(int b) {
     const double reach = scene_.max_tolerance + 1e-12 * scene_.diameter;
     for (int c = 0; c < scene_.size(); ++c) {
         if (c == b || scene_.label(c) != scene_.label(b)) continue;
-        if (apex.fourths.size() > kMostStored) return;
+        if (apex.fourths.size() > kMostStored || monitor.should_stop()) return;
         wings(scene_, c, b, left);
         if (left.empty()) continue;
         wings(scene_, b, c, right);

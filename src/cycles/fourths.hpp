@@ -58,7 +58,7 @@ private:
         List fourths;
     };
 
-    void build(int b);
+    void build(int b, RunMonitor& monitor);
     void fill_table(Apex& apex, const std::vector<Slot>& seeds) const;
     const Slot* find(int a, int b, int c) const;
     void make(int a, int b, int c, List& list) const;
