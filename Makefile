@@ -51,6 +51,12 @@ sanitize-asan sanitize-tsan: sanitize-%: packages-test
 	@$(call build,$*,all)
 	@ctest --preset $* --parallel $(JOBS)
 
+.PHONY: sanitize-threads
+sanitize-threads: packages-test ## Run the tests of what runs in parallel with the thread sanitizer: a part of sanitize-tsan, for CI
+	@$(call build,tsan,insym_property_run insym_property_pairs)
+	build-tsan/tests/property/insym_property_run
+	build-tsan/tests/property/insym_property_pairs
+
 .PHONY: bench
 bench: packages-test ## Time the stages, and the program against its targets
 	@$(call build,release,insym_app insym_bench)
