@@ -54,8 +54,8 @@ sanitize-asan sanitize-tsan: sanitize-%: packages-test
 .PHONY: sanitize-threads
 sanitize-threads: packages-test ## Run the tests of what runs in parallel with the thread sanitizer: a part of sanitize-tsan, for CI
 	@$(call build,tsan,insym_property_run insym_property_pairs)
-	build-tsan/tests/property/insym_property_run
-	build-tsan/tests/property/insym_property_pairs
+	TSAN_OPTIONS=suppressions=$(CURDIR)/cmake/tsan_suppressions.txt build-tsan/tests/property/insym_property_run
+	TSAN_OPTIONS=suppressions=$(CURDIR)/cmake/tsan_suppressions.txt build-tsan/tests/property/insym_property_pairs
 
 .PHONY: bench
 bench: packages-test ## Time the stages, and the program against its targets
