@@ -159,7 +159,10 @@ void write_results(const Options& options, const DetectResult& result, const Rep
         failure = std::current_exception();
     }
     if (wants_table(options))
-        write_output("-", [&](std::ostream& out) { write_table(out, result, context, options.limit); });
+        write_output("-", [&](std::ostream& out) {
+            write_table(out, result, context, options.limit, options.all);
+            if (options.levels) write_levels(out, result, context);
+        });
     if (failure) std::rethrow_exception(failure);
 }
 

@@ -63,7 +63,7 @@ struct Typed {
     std::string import_memory = "4096", import_time = "300";
     std::string method = "paper", types = "M,I,C2,C,T,Z,S,W";
     std::string max_tolerance = "auto", resolution = "1e-6", limit = "20", threads = "0";
-    bool quiet = false;
+    bool quiet = false, all = false, levels = false;
 };
 
 [[noreturn]] void fail(const std::string& sentence) {
@@ -186,14 +186,10 @@ TypeSet parse_types(const std::string& text) {
     return types;
 }
 
-/// One of `known`, of which the first is there in this version and the others are announced.
-void check_choice(const std::string& option, const std::string& value,
-                  const std::vector<std::string>& known) {
-    if (value == known.front()) return;
-    if (std::find(known.begin(), known.end(), value) != known.end())
-        fail(option + " " + value + " is not available yet in this version; use " + option + " " +
-             known.front());
-    fail("unknown value '" + value + "' of " + option + hint_for(value, known));
+Method parse_method(const std::string& text) {
+    if (text == "robust") return Method::robust;
+    if (text == "paper") return Method::paper;
+    fail("unknown value '" + text + "' of --method" + hint_for(text, {"robust", "paper"}));
 }
 
 /// --points: which entities of a model; and the words for the report, in a fixed order.
@@ -238,7 +234,7 @@ void declare(CLI::App& detect, Typed& typed) {
     };
     add("--json", typed.json, "FILE|-", "Write the full report; - is standard output");
     add("--html", typed.html, "FILE", "Not available yet");
-    add("--method", typed.method, "paper", "Definition of a symmetry");
+    add("--method", typed.method, "robust|paper", "Definition of a symmetry (default: paper)");
     add("--types", typed.types, "M,I,C2,...", "Kinds to look for, see below (default: all)");
     add("--points", typed.points, "LIST",
         "Entities of a model that give points, see below (default: representative)");
@@ -260,6 +256,9 @@ void declare(CLI::App& detect, Typed& typed) {
     add("--time-limit", typed.time_limit, "S",
         "Stop after so many seconds since the start, with what is found");
     add("--columns", typed.columns, "x,y,label", "Meaning of the columns of points: x, y, z, label or skip");
+    detect.add_flag("--all", typed.all, "List what follows from others as well");
+    detect.add_flag("--levels", typed.levels,
+                    "List, too, from which tolerance to which each set of symmetries holds");
     detect.add_flag("--quiet", typed.quiet, "No progress, no notes; with --json FILE no table either");
 }
 
@@ -311,7 +310,7 @@ void check_values(const CLI::App& detect) {
 Options checked(const Typed& typed) {
     Options options;
     if (!typed.html.empty()) fail("--html is not available yet in this version; use --json for a report");
-    check_choice("--method", typed.method, {"paper", "robust"});
+    options.detect.method = parse_method(typed.method);
     options.input = typed.input;
     options.json = typed.json == "/dev/stdout" ? "-" : typed.json;
     options.detect.types = parse_types(typed.types);
@@ -331,6 +330,8 @@ Options checked(const Typed& typed) {
     options.read_mesh.sharp_angle_deg = parse_sharp_angle(typed.sharp_angle);
     options.limits = {parse_mebibytes("--import-memory", typed.import_memory),
                       parse_seconds("--import-time", typed.import_time)};
+    options.all = typed.all;
+    options.levels = typed.levels;
     options.quiet = typed.quiet;
     return options;
 }

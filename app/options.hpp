@@ -22,6 +22,8 @@ struct Options {
     int limit = 0;       ///< symmetries in the table, 0: all
     int threads = 0;     ///< 0: all cores
     std::optional<double> time_limit_s;
+    bool all = false;     ///< also what follows from other symmetries
+    bool levels = false;  ///< the table of tolerances as well
     bool quiet = false;
 };
 

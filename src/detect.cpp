@@ -12,10 +12,13 @@
 #include "parallel_for.hpp"
 #include "points/diameter.hpp"
 #include "points/merge.hpp"
+#include "ranking/implied.hpp"
 #include "ranking/measure.hpp"
+#include "ranking/point_group.hpp"
 #include "ranking/rank.hpp"
 #include "run_monitor.hpp"
 #include "scene.hpp"
+#include "support/detect_robust.hpp"
 #include "symmetries/detect_symmetries.hpp"
 
 namespace insym {
@@ -23,6 +26,9 @@ namespace {
 
 /// 24 n^2 bytes of distances are 5.4 GB then.
 constexpr std::size_t kMostPoints = 15000;
+
+/// Method `robust` chooses the tolerance of each symmetry itself, up to this share of the diameter.
+constexpr double kLargestTolerance = 0.1;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -86,14 +92,7 @@ bool listed(const Symmetry& s) {
     return !is_pair_type(s.type) || s.coverage >= 1 || s.cycles.size() + s.fixed_points.size() >= 4;
 }
 
-void measure_all(const Scene& scene, std::vector<Symmetry>& symmetries) {
-    const Measure measure(scene);
-    parallel_for(symmetries.size(), [&](std::size_t i) { measure.complete(symmetries[i]); });
-    std::erase_if(symmetries, [](const Symmetry& s) { return !listed(s); });
-    rank(symmetries);
-}
-
-void run(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
+void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
     const auto start = std::chrono::steady_clock::now();
     // Pairs need no cycles; a run that asks for pairs alone does not pay for them.
     CycleSearchResult search;
@@ -105,7 +104,14 @@ void run(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, 
     const auto after_cycles = std::chrono::steady_clock::now();
     SymmetrySearchResult found = detect_symmetries(scene, result.cycles, options.types, monitor);
     result.symmetries = std::move(found.symmetries);
-    measure_all(scene, result.symmetries);
+    const Significance significance(scene);
+    const Measure measure(scene, significance);
+    parallel_for(result.symmetries.size(), [&](std::size_t i) {
+        measure.complete(result.symmetries[i]);
+        result.symmetries[i].significance = measure.significance_of(result.symmetries[i]);
+    });
+    std::erase_if(result.symmetries, [](const Symmetry& s) { return !listed(s); });
+    rank(result.symmetries);
     result.timing.symmetries_s = seconds_since(after_cycles);
 
     if (found.frustrated > 0)
@@ -114,6 +120,23 @@ void run(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, 
              std::to_string(found.frustrated) +
                  " sets of consistent cycles have no common direction and were left out"});
     result.stats = {search.seeds, result.cycles.size(), result.symmetries.size()};
+}
+
+void run_robust(const PointScene& scene, const DetectOptions& options, RunMonitor& monitor,
+                DetectResult& result) {
+    const auto start = std::chrono::steady_clock::now();
+    const Significance significance(scene);
+    RobustResult found = detect_robust(scene, significance, options.types, monitor);
+    result.symmetries = std::move(found.symmetries);
+    result.max_tolerance = found.max_tolerance;
+    const Measure measure(scene, significance);
+    parallel_for(result.symmetries.size(), [&](std::size_t i) { measure.complete(result.symmetries[i]); });
+    promote_generators(scene, result.symmetries);
+    rank(result.symmetries);
+    mark_implied(scene, result.symmetries);
+    result.group = point_group(scene, result.symmetries);
+    result.timing.symmetries_s = seconds_since(start);
+    result.stats = {found.hypotheses, 0, result.symmetries.size()};
 }
 
 }  // namespace
@@ -138,23 +161,28 @@ DetectResult detect(const PointSet& points, const DetectOptions& options, const 
             {"merged_points",
              std::to_string(result.merged_points) +
                  " points lay closer than the resolution to another and were merged with it"});
-    if (result.points.size() > kMostPoints)
+    const bool paper = options.method == Method::paper;
+    if (paper && result.points.size() > kMostPoints)
         throw Error(ErrorCode::invalid_input,
                     std::to_string(result.points.size()) +
                         " points are too many: method paper keeps all distances, for at most " +
                         std::to_string(kMostPoints) + " points");
-    const double share = options.max_tolerance ? *options.max_tolerance
-                                               : automatic_tolerance(result.points, options.resolution);
-    result.max_tolerance = share * result.diameter;
+    const double automatic = paper ? automatic_tolerance(result.points, options.resolution)
+                                   : std::max(kLargestTolerance, options.resolution);
+    result.max_tolerance = options.max_tolerance.value_or(automatic) * result.diameter;
 
     RunMonitor monitor(context);
     // More threads than cores would only make TBB complain on standard error.
     const int cores = tbb::info::default_concurrency();
     tbb::task_arena arena(context.threads > 0 ? std::min(context.threads, cores) : cores);
     arena.execute([&] {
-        const Distances distances(result.points.positions);
-        const Scene scene{result.points, distances, result.diameter, result.resolution, result.max_tolerance};
-        run(scene, options, monitor, result);
+        const PointScene scene{result.points, result.diameter, result.resolution, result.max_tolerance};
+        if (paper) {
+            const Distances distances(result.points.positions);
+            run_paper({scene, distances}, options, monitor, result);
+        } else {
+            run_robust(scene, options, monitor, result);
+        }
     });
     result.status = monitor.status();
     result.timing.detect_s = seconds_since(start);

@@ -16,7 +16,8 @@ namespace insym {
 
 /// Which definition of a symmetry is used (definitions, sections 4 to 6).
 enum class Method {
-    paper,  ///< cycles and clusters of consistent cycles, as in Li, Langbein and Martin 2007
+    robust,  ///< an isometry is judged by all the points it carries, against chance (section 8)
+    paper,   ///< cycles and clusters of consistent cycles, as in Li, Langbein and Martin 2007
 };
 
 /// What to look for. The defaults suit exact and slightly noisy models.
@@ -70,6 +71,14 @@ struct Symmetry {
     std::vector<int> implied_by;    ///< ids of better-ranked symmetries that give this one
 };
 
+/// The symmetries of the whole set: they leave one point in place and form a group.
+struct PointGroup {
+    std::string schoenflies;      ///< "C1", "D3h", "Oh", "Cinfv"; in 2D "C4" or, with mirrors, "D4"
+    std::string hermann_mauguin;  ///< "1", "-6m2", "m-3m", "inf m"; a leading minus is the bar
+    Point center{};               ///< what all elements leave in place; the centroid with the empty slots filled
+    int empty_slots = 0;          ///< points that the set lacks for the group to be complete
+};
+
 enum class RunStatus { complete, time_limit, cancelled, result_limit };
 
 /// The columns of the paper's Table 1.
@@ -96,6 +105,7 @@ struct DetectResult {
     int merged_points = 0;     ///< how many points fell together with another
     std::vector<Cycle> cycles;
     std::vector<Symmetry> symmetries;  ///< best rank first
+    std::optional<PointGroup> group;   ///< method robust
     Stats stats;
     Timing timing;
     std::vector<Diagnostic> diagnostics;

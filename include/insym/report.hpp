@@ -21,8 +21,13 @@ struct ReportContext {
 /// Writes the report; all lengths in the input's unit, angles in degrees. Linear in its size.
 INSYM_EXPORT void write_json(std::ostream& out, const DetectResult& result, const ReportContext& context);
 
-/// Writes a ranked table of the first `limit` symmetries (0: all) with units, for people.
+/// Writes a ranked table of the first `limit` symmetries (0: all) with units, for people. Those that follow from
+/// others (implied_by) are only counted unless `all` is set.
 INSYM_EXPORT void write_table(std::ostream& out, const DetectResult& result, const ReportContext& context,
-                              int limit);
+                              int limit, bool all = false);
+
+/// Writes from which tolerance to which the set of significant symmetries that nothing implies stays the same
+/// (plateaus), and which come and go between.
+INSYM_EXPORT void write_levels(std::ostream& out, const DetectResult& result, const ReportContext& context);
 
 }  // namespace insym

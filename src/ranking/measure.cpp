@@ -20,18 +20,19 @@ void for_each_link(const Symmetry& symmetry, Visit visit) {
 
 }  // namespace
 
-Measure::Measure(const Scene& scene)
-    : scene_(scene), grid_(scene.points.positions), significance_(scene.points, scene.resolution) {}
+Measure::Measure(const PointScene& scene, const Significance& significance)
+    : scene_(scene), grid_(scene.points.positions), significance_(significance) {}
 
 void Measure::complete(Symmetry& symmetry) const {
     fit(symmetry);
     cover(symmetry);
     symmetry.order = order_of(symmetry);
-    int links = 0;
-    for_each_link(symmetry, [&](int, int) { ++links; });
-    // The two links of a pair say the same.
-    if (is_pair_type(symmetry.type)) links /= 2;
-    symmetry.significance = significance_.log10_false_alarms(symmetry.type, links, symmetry.deviation.max);
+}
+
+double Measure::significance_of(const Symmetry& symmetry) const {
+    Evidence evidence;
+    for (const Orbit& orbit : symmetry.cycles) evidence.hits += static_cast<int>(orbit.points.size()) - 1;
+    return significance_.log10_false_alarms(symmetry.type, evidence, symmetry.deviation.max);
 }
 
 void Measure::fit(Symmetry& symmetry) const {

@@ -10,20 +10,23 @@ namespace insym {
 /// Measures symmetries of one scene; immutable, thread-safe.
 class Measure {
 public:
-    explicit Measure(const Scene& scene);
+    Measure(const PointScene& scene, const Significance& significance);
 
-    /// Fills isometry, order, deviation, coverage, fixed points and significance of a symmetry whose
-    /// type, cycles and tolerance are set. O(links + n).
+    /// Fills isometry, order, deviation, coverage and fixed points of a symmetry whose type, cycles and
+    /// tolerance are set. O(links + n).
     void complete(Symmetry& symmetry) const;
+
+    /// How surely it is no chance, by its links and its deviation alone. After complete().
+    double significance_of(const Symmetry& symmetry) const;
 
 private:
     void fit(Symmetry& symmetry) const;
     void cover(Symmetry& symmetry) const;
     std::optional<int> order_of(const Symmetry& symmetry) const;
 
-    const Scene& scene_;
+    const PointScene& scene_;
     PointGrid grid_;
-    Significance significance_;
+    const Significance& significance_;
 };
 
 }  // namespace insym

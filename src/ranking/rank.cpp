@@ -1,6 +1,7 @@
 #include "ranking/rank.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace insym {
 namespace {
@@ -24,6 +25,9 @@ void rank(std::vector<Symmetry>& symmetries) {
         const std::size_t m = moved_points(a), n = moved_points(b);
         if (m != n) return m > n;
         if (a.type != b.type) return a.type < b.type;
+        // Of the generators of one ring or row, the smallest turn or step.
+        const double x = std::round(a.isometry.angle_deg * 1e3), y = std::round(b.isometry.angle_deg * 1e3);
+        if (x != y) return x < y;
         return cycles_before(a, b);
     });
     int id = 0;

@@ -26,7 +26,7 @@ std::string_view word(RunStatus status) {
 }
 
 std::string_view word(Method method) {
-    constexpr std::array<std::string_view, 1> words = {"paper"};
+    constexpr std::array<std::string_view, 2> words = {"robust", "paper"};
     return words[static_cast<std::size_t>(method)];
 }
 
@@ -204,7 +204,12 @@ void write_json(std::ostream& out, const DetectResult& result, const ReportConte
     writer.list_or_null("entities", result.points.entities, convert);
     writer.list("cycles", result.cycles, convert);
     writer.list("symmetries", result.symmetries, convert);
-    writer.member("group", nullptr);
+    writer.member("group", null_or(result.group, [&](const PointGroup& group) {
+                      return Json{{"schoenflies", group.schoenflies},
+                                  {"hermann_mauguin", group.hermann_mauguin},
+                                  {"center", coordinates(group.center, dimension)},
+                                  {"empty_slots", group.empty_slots}};
+                  }));
     writer.member("stats", {{"seeds", result.stats.seeds},
                             {"cycles", result.stats.cycles},
                             {"symmetries", result.stats.symmetries}});

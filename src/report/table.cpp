@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <ostream>
 #include <string_view>
@@ -442,7 +443,7 @@ std::vector<std::string> row_of(const DetectResult& result, const ReportContext&
 }
 
 void write_rows(std::ostream& out, const DetectResult& result, const ReportContext& context,
-                std::size_t shown) {
+                const std::vector<const Symmetry*>& shown) {
     const std::string unit = context.unit ? " [" + *context.unit + "]" : "";
     TextTable table({{"#", true},
                      {"type"},
@@ -457,26 +458,97 @@ void write_rows(std::ostream& out, const DetectResult& result, const ReportConte
                      {"made of"},
                      {"notes"}});
     const Makeup makeup(result, context);
-    for (std::size_t i = 0; i < shown; ++i) table.add(row_of(result, context, makeup, result.symmetries[i]));
+    for (const Symmetry* symmetry : shown) table.add(row_of(result, context, makeup, *symmetry));
     table.write(out);
+}
+
+void write_group(std::ostream& out, const DetectResult& result) {
+    if (!result.group || result.group->schoenflies == "C1") return;
+    const PointGroup& group = *result.group;
+    out << "point group " << group.schoenflies << " (" << group.hermann_mauguin << ")";
+    if (group.empty_slots > 0)
+        out << " but for "
+            << count_text(static_cast<std::size_t>(group.empty_slots), "empty slot", "empty slots");
+    out << '\n';
+}
+
+/// A tolerance at which symmetries begin to hold, or turn ambiguous.
+struct Change {
+    double tolerance;
+    int id;
+    bool begins;
+};
+
+std::vector<Change> changes_of(const DetectResult& result) {
+    std::vector<Change> changes;
+    for (const Symmetry& s : result.symmetries) {
+        if (!s.implied_by.empty() || s.significance >= 0) continue;
+        changes.push_back({s.tolerance.min, s.id, true});
+        if (std::isfinite(s.tolerance.max)) changes.push_back({s.tolerance.max, s.id, false});
+    }
+    std::sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
+        return a.tolerance != b.tolerance ? a.tolerance < b.tolerance : a.id < b.id;
+    });
+    return changes;
+}
+
+/// " 1, 2, 3, … (12)" with a word before it; empty without ids.
+std::string ids_text(std::string_view word, const std::vector<int>& ids) {
+    constexpr std::size_t kMost = 6;
+    if (ids.empty()) return "";
+    std::string text(word);
+    for (std::size_t i = 0; i < std::min(ids.size(), kMost); ++i)
+        text += (i == 0 ? " " : ", ") + std::to_string(ids[i]);
+    return ids.size() > kMost ? text + ", … (" + std::to_string(ids.size()) + ")" : text;
 }
 
 }  // namespace
 
-void write_table(std::ostream& out, const DetectResult& result, const ReportContext& context, int limit) {
+void write_levels(std::ostream& out, const DetectResult& result, const ReportContext& context) {
+    constexpr double kTogether = 1.2;  // changes at tolerances nearer than this ratio are one
+    const std::string unit = context.unit ? " [" + *context.unit + "]" : "";
+    const std::vector<Change> changes = changes_of(result);
+    TextTable table({{"tolerance" + unit, true}, {"hold", true}, {"new"}, {"ambiguous"}});
+    std::size_t holding = 0;
+    for (std::size_t k = 0; k < changes.size();) {
+        const double from = changes[k].tolerance;
+        std::vector<int> begin, end;
+        for (double last = from; k < changes.size() && changes[k].tolerance <= last * kTogether; ++k) {
+            last = changes[k].tolerance;
+            (changes[k].begins ? begin : end).push_back(changes[k].id);
+        }
+        holding += begin.size();
+        holding -= end.size();
+        const double to = k < changes.size() ? changes[k].tolerance : std::numeric_limits<double>::infinity();
+        const bool exact = from <= result.resolution * (1 + 1e-9);
+        table.add({(exact ? "exact" : short_text(from)) + " – " + short_text(to), std::to_string(holding),
+                   ids_text("", begin), ids_text("", end)});
+    }
+    out << '\n';
+    table.write(out);
+}
+
+void write_table(std::ostream& out, const DetectResult& result, const ReportContext& context, int limit,
+                 bool all) {
     write_summary(out, result, context);
     out << early_end(result.status);
-    const std::size_t all = result.symmetries.size();
-    if (all == 0) {
+    write_group(out, result);
+    if (result.symmetries.empty()) {
         const bool complete = result.status == RunStatus::complete;
         out << "No symmetries found"
             << (complete ? "; a larger --max-tolerance looks for rougher ones.\n" : " yet.\n");
         return;
     }
-    const std::size_t shown = limit > 0 ? std::min(all, static_cast<std::size_t>(limit)) : all;
+    std::vector<const Symmetry*> rows;
+    for (const Symmetry& s : result.symmetries)
+        if (all || s.implied_by.empty()) rows.push_back(&s);
+    const std::size_t folded = result.symmetries.size() - rows.size();
+    const std::size_t listed = rows.size();
+    if (limit > 0 && listed > static_cast<std::size_t>(limit)) rows.resize(static_cast<std::size_t>(limit));
     out << '\n';
-    write_rows(out, result, context, shown);
-    if (shown < all) out << std::to_string(all - shown) << " more; --limit 0 shows all\n";
+    write_rows(out, result, context, rows);
+    if (rows.size() < listed) out << std::to_string(listed - rows.size()) << " more; --limit 0 shows all\n";
+    if (folded > 0) out << std::to_string(folded) << " that follow from these; --all lists them too\n";
     out << "\ntolerance: from where it holds to where it turns ambiguous; significance: log10 of the number "
            "of\n"
            "symmetries as good that chance would give; the lower, the surer\n";

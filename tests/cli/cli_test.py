@@ -311,7 +311,6 @@ def test_unknown_method(box):
 
 def test_not_available_yet(box):
     box.points("a.xyz", ring(6))
-    assert_fails(box, USAGE, "not available yet", "detect", "a.xyz", "--method", "robust")
     assert_fails(box, USAGE, "not available yet", "detect", "a.xyz", "--html", "r.html")
 
 

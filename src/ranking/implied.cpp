@@ -1,0 +1,231 @@
+#include "ranking/implied.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "isometry/fit.hpp"
+#include "parallel_for.hpp"
+#include "points/point_grid.hpp"
+
+namespace insym {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr int kMostPowers = 24;
+
+RigidMap map_of(const Symmetry& s, const Vector3d& middle) {
+    RigidMap map;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            map.linear(i, j) = s.isometry.linear[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+    map.shift = to_vector(s.isometry.translation) + map.linear * middle - middle;
+    return map;
+}
+
+RigidMap product(const RigidMap& f, const RigidMap& g) {
+    return {f.linear * g.linear, f(g.shift)};
+}
+
+RigidMap inverse(const RigidMap& f) {
+    return {f.linear.transpose(), -(f.linear.transpose() * f.shift)};
+}
+
+/// A symmetry with what is asked of it again and again, about the middle of the set.
+struct Item {
+    RigidMap map;
+    std::vector<char> carried;  // points on its orbits, or left in place
+    std::vector<int> points;    // on its orbits
+    double slack = 0;           // how well a link says the map
+    double reach = 0;           // of its points from the middle
+};
+
+class Implications {
+public:
+    Implications(const PointScene& scene, const std::vector<Symmetry>& symmetries) : symmetries_(symmetries) {
+        const auto n = static_cast<double>(scene.size());
+        for (int i = 0; i < scene.size(); ++i) middle_ += to_vector(scene.position(i)) / n;
+        std::vector<Point> positions;
+        for (int i = 0; i < scene.size(); ++i) {
+            places_.push_back(to_vector(scene.position(i)) - middle_);
+            positions.push_back(to_point(places_.back()));
+        }
+        grid_ = PointGrid(positions);
+        items_.resize(symmetries.size());
+        parallel_for(symmetries.size(), [&](std::size_t k) { items_[k] = item(scene, symmetries[k]); });
+    }
+
+    /// The same motion on the points of `a`, to what both are known.
+    bool equal(const Item& a, const RigidMap& other, double slack) const {
+        const double limit = slack * slack;
+        // A few points settle most cases.
+        const std::size_t step = std::max<std::size_t>(1, a.points.size() / 4);
+        for (std::size_t k = 0; k < a.points.size(); k += step)
+            if (off(a, other, a.points[k]) > limit) return false;
+        return std::all_of(a.points.begin(), a.points.end(),
+                           [&](int p) { return off(a, other, p) <= limit; });
+    }
+
+    /// The share of a's points that b carries or leaves in place is (nearly) all.
+    bool carries(const Item& b, const Item& a) const {
+        const auto in = std::count_if(a.points.begin(), a.points.end(),
+                                      [&](int p) { return b.carried[static_cast<std::size_t>(p)] != 0; });
+        return 10 * static_cast<std::size_t>(in) >= 9 * a.points.size();
+    }
+
+    const Item& operator[](std::size_t k) const { return items_[k]; }
+
+    /// Powers of symmetry k, both ways, the first the map itself.
+    std::vector<RigidMap> powers(std::size_t k, int most) const {
+        std::vector<RigidMap> out;
+        const RigidMap& f = items_[k].map;
+        const RigidMap back = inverse(f);
+        RigidMap forward = f, backward = back;
+        const int count = is_pair_type(symmetries_[k].type) ? 1 : most;
+        for (int i = 0; i < count; ++i) {
+            out.push_back(forward);
+            if (count > 1) out.push_back(backward);
+            forward = product(f, forward);
+            backward = product(back, backward);
+        }
+        return out;
+    }
+
+private:
+    double off(const Item& a, const RigidMap& other, int p) const {
+        const Vector3d& x = places_[static_cast<std::size_t>(p)];
+        return (a.map(x) - other(x)).squaredNorm();
+    }
+
+    Item item(const PointScene& scene, const Symmetry& s) const {
+        Item out;
+        out.map = map_of(s, middle_);
+        out.carried.assign(places_.size(), 0);
+        for (const Orbit& o : s.cycles)
+            for (const int p : o.points) {
+                out.points.push_back(p);
+                out.carried[static_cast<std::size_t>(p)] = 1;
+            }
+        for (const int p : s.fixed_points) out.carried[static_cast<std::size_t>(p)] = 1;
+        out.slack = std::max({s.deviation.max, scene.resolution});
+        if (!is_pair_type(s.type) && s.significance < 0) carry_beyond_gaps(s, out);
+        return out;
+    }
+
+    /// Points that lie on an orbit with gaps between them and its runs are carried as well.
+    void carry_beyond_gaps(const Symmetry& s, Item& out) const {
+        constexpr int kSteps = 12;
+        const RigidMap back = inverse(out.map);
+        for (const Orbit& o : s.cycles) {
+            if (o.closed) continue;
+            for (const bool forward : {true, false}) {
+                Vector3d place =
+                    places_[static_cast<std::size_t>(forward ? o.points.back() : o.points.front())];
+                for (int k = 0; k < kSteps; ++k) {
+                    place = forward ? out.map(place) : back(place);
+                    grid_.visit_ball(to_point(place), 2 * out.slack, [&](int p, double) {
+                        out.carried[static_cast<std::size_t>(p)] = 1;
+                        return true;
+                    });
+                }
+            }
+        }
+    }
+
+    const std::vector<Symmetry>& symmetries_;
+    Vector3d middle_ = Vector3d::Zero();
+    std::vector<Vector3d> places_;
+    PointGrid grid_{{}};
+    std::vector<Item> items_;
+};
+
+/// How much may lie between a map and a word of others: each is known to about its deviation.
+double slack_of(const Item& a, const Item& b, const Item& c) {
+    return 2 * (a.slack + b.slack + c.slack);
+}
+
+}  // namespace
+
+void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetries) {
+    const Implications all(scene, symmetries);
+    constexpr double kShare = 0.4;  // of a power's significance that its generator must have by itself
+    // The largest turns and steps first, so that the smallest has the last word.
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < symmetries.size(); ++k)
+        if (!is_pair_type(symmetries[k].type) && symmetries[k].significance < 0) order.push_back(k);
+    const auto motion = [&](std::size_t k) {
+        const Isometry& f = symmetries[k].isometry;
+        return std::pair(std::round(f.angle_deg * 1e3), f.step);
+    };
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return motion(a) > motion(b); });
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const std::size_t g = order[i];
+        std::vector<RigidMap> powers = all.powers(g, kMostPowers);
+        powers.erase(powers.begin(), powers.begin() + 2);
+        const double own = symmetries[g].significance;
+        double best = own;
+        for (std::size_t k = 0; k < symmetries.size(); ++k) {
+            // A half-turn, a mirror or an inversion can be a power as well.
+            if (k == g || symmetries[k].significance > best ||
+                (!is_pair_type(symmetries[k].type) && motion(k) < motion(g)))
+                continue;
+            // A power of a chance is no intent.
+            if (own > kShare * symmetries[k].significance || !all.carries(all[g], all[k])) continue;
+            double slack = 2 * all[k].slack;
+            for (std::size_t j = 0; j < powers.size(); ++j) {
+                slack = 2 * all[k].slack + (2 + 0.5 * static_cast<double>(j / 2)) * all[g].slack;
+                if (!all.equal(all[k], powers[j], slack)) continue;
+                best = symmetries[k].significance * (1 + 1e-9);
+                break;
+            }
+        }
+        symmetries[g].significance = best;
+    }
+}
+
+void mark_implied(const PointScene& scene, std::vector<Symmetry>& symmetries) {
+    constexpr std::size_t kMostGenerators = 24;
+    constexpr int kMostWordPowers = 12;
+    const Implications all(scene, symmetries);
+    std::vector<std::size_t> generators;
+    std::vector<std::vector<RigidMap>> powers;
+    for (std::size_t k = 0; k < symmetries.size(); ++k) {
+        const Item& a = all[k];
+        std::vector<std::size_t> able;  // of the generators, those that carry these points
+        for (std::size_t g = 0; g < generators.size(); ++g)
+            if (all.carries(all[generators[g]], a)) able.push_back(g);
+        const auto found = [&]() -> std::vector<std::size_t> {
+            for (const std::size_t g : able)
+                for (std::size_t j = 0; j < powers[g].size(); ++j)
+                    if (all.equal(
+                            a, powers[g][j],
+                            2 * a.slack + (2 + 0.5 * static_cast<double>(j / 2)) * all[generators[g]].slack))
+                        return {g};
+            for (const std::size_t g : able)
+                for (const std::size_t h : able) {
+                    if (g == h) continue;
+                    const double slack = slack_of(a, all[generators[g]], all[generators[h]]);
+                    const std::size_t m = std::min<std::size_t>(powers[g].size(), 2 * kMostWordPowers);
+                    const std::size_t n = std::min<std::size_t>(powers[h].size(), 2 * kMostWordPowers);
+                    for (std::size_t i = 0; i < m; ++i)
+                        for (std::size_t j = 0; j < n; ++j)
+                            if (all.equal(a, product(powers[g][i], powers[h][j]), slack)) return {g, h};
+                }
+            return {};
+        }();
+        if (found.empty()) {
+            if (generators.size() < kMostGenerators) {
+                generators.push_back(k);
+                powers.push_back(all.powers(k, kMostPowers));
+            }
+            continue;
+        }
+        for (const std::size_t g : found) symmetries[k].implied_by.push_back(symmetries[generators[g]].id);
+        std::sort(symmetries[k].implied_by.begin(), symmetries[k].implied_by.end());
+    }
+}
+
+}  // namespace insym

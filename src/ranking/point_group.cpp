@@ -1,0 +1,357 @@
+#include "ranking/point_group.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "isometry/fit.hpp"
+#include "points/point_grid.hpp"
+
+namespace insym {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kSameMap =
+    0.05;  // radians: what two elements of one group are never nearer than, up to order 100
+
+/// The turn of an orthogonal map: proper part angle and axis.
+struct Element {
+    bool improper = false;
+    double angle = 0;  // of the map, or of the map times the inversion where improper
+    Vector3d axis = Vector3d::UnitZ();
+};
+
+Element element_of(const Matrix3d& map) {
+    Element e;
+    e.improper = map.determinant() < 0;
+    const Matrix3d turn = e.improper ? Matrix3d(-map) : map;
+    const Matrix3d k = 2 * Matrix3d::Identity() - turn - turn.transpose();
+    e.axis = Eigen::SelfAdjointEigenSolver<Matrix3d>(k).eigenvectors().col(0);
+    e.angle = std::acos(std::clamp((turn.trace() - 1) / 2, -1.0, 1.0));
+    return e;
+}
+
+bool near_angle(double angle, double other) {
+    return std::abs(angle - other) < kSameMap;
+}
+
+/// What the decision tree of every textbook asks for.
+struct Census {
+    struct Axis {
+        Vector3d direction;
+        int order = 1;  // 1 + the number of its turns
+    };
+    std::vector<Axis> axes;
+    std::vector<Vector3d> mirrors;  // normals
+    bool inversion = false;
+    int size = 1;
+
+    explicit Census(const std::vector<Matrix3d>& elements) {
+        for (const Matrix3d& m : elements) {
+            const Element e = element_of(m);
+            if (!e.improper && e.angle < kSameMap) continue;
+            ++size;
+            if (e.improper && e.angle < kSameMap) {
+                inversion = true;
+            } else if (e.improper && near_angle(e.angle, std::numbers::pi)) {
+                mirrors.push_back(e.axis);
+            } else if (!e.improper) {
+                add_turn(e.axis);
+            }
+        }
+        std::stable_sort(axes.begin(), axes.end(),
+                         [](const Axis& a, const Axis& b) { return a.order > b.order; });
+    }
+
+    int axes_of(int order) const {
+        return static_cast<int>(
+            std::count_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.order == order; }));
+    }
+
+private:
+    void add_turn(const Vector3d& direction) {
+        for (Axis& a : axes)
+            if (std::abs(a.direction.dot(direction)) > std::cos(2 * kSameMap)) {
+                ++a.order;
+                return;
+            }
+        axes.push_back({direction, 2});
+    }
+};
+
+std::string number(int n) {
+    return std::to_string(n);
+}
+
+GroupName cubic(const Census& c) {
+    if (c.axes_of(5) > 0) return c.inversion ? GroupName{"Ih", "m-3-5"} : GroupName{"I", "235"};
+    if (c.axes_of(4) > 0) return c.inversion ? GroupName{"Oh", "m-3m"} : GroupName{"O", "432"};
+    if (c.inversion) return {"Th", "m-3"};
+    return c.mirrors.empty() ? GroupName{"T", "23"} : GroupName{"Td", "-43m"};
+}
+
+GroupName uniaxial(const Census& c) {
+    const int n = c.axes.front().order;
+    const Vector3d axis = c.axes.front().direction;
+    const auto across = [&](const Vector3d& v) { return std::abs(v.dot(axis)) < 2 * kSameMap; };
+    const bool dihedral =
+        std::any_of(c.axes.begin() + 1, c.axes.end(), [&](const auto& a) { return across(a.direction); });
+    const bool flat = std::any_of(c.mirrors.begin(), c.mirrors.end(), [&](const Vector3d& v) {
+        return std::abs(v.dot(axis)) > std::cos(2 * kSameMap);
+    });
+    const bool upright = std::any_of(c.mirrors.begin(), c.mirrors.end(), across);
+    const bool even = n % 2 == 0;
+    const std::string name = number(n), twice = number(2 * n);
+    if (dihedral) {
+        if (flat) {
+            if (n == 2) return {"D2h", "mmm"};
+            return {"D" + name + "h", even ? name + "/mmm" : "-" + twice + "m2"};
+        }
+        if (upright) return {"D" + name + "d", even ? "-" + twice + "2m" : "-" + name + "m"};
+        return {"D" + name, n == 2 ? "222" : even ? name + "22" : name + "2"};
+    }
+    if (flat) return {"C" + name + "h", even ? name + "/m" : "-" + twice};
+    if (upright) return {"C" + name + "v", n == 2 ? "mm2" : even ? name + "mm" : name + "m"};
+    if (c.size == 2 * n) return {"S" + twice, even ? "-" + twice : "-" + name};
+    return {"C" + name, name};
+}
+
+RigidMap map_of(const Symmetry& s, const Vector3d& middle) {
+    RigidMap map;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            map.linear(i, j) = s.isometry.linear[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+    map.shift = to_vector(s.isometry.translation) + map.linear * middle - middle;
+    return map;
+}
+
+}  // namespace
+
+GroupName name_group(const std::vector<Matrix3d>& elements, int dimension) {
+    const Census c(elements);
+    if (dimension == 2) {
+        const int turns =
+            1 + static_cast<int>(std::count_if(elements.begin(), elements.end(), [](const Matrix3d& m) {
+                return m.determinant() > 0 && element_of(m).angle > kSameMap;
+            }));
+        const bool mirror = std::any_of(elements.begin(), elements.end(),
+                                        [](const Matrix3d& m) { return m.determinant() < 0; });
+        const std::string name = number(turns);
+        if (!mirror) return {"C" + name, name};
+        return {"D" + name, turns == 1       ? "m"
+                            : turns == 2     ? "2mm"
+                            : turns % 2 == 0 ? name + "mm"
+                                             : name + "m"};
+    }
+    if (c.axes_of(3) >= 4 || c.axes_of(5) >= 6) return cubic(c);
+    if (!c.axes.empty()) return uniaxial(c);
+    if (c.inversion) return {"Ci", "-1"};
+    if (!c.mirrors.empty()) return {"Cs", "m"};
+    return {"C1", "1"};
+}
+
+namespace {
+
+/// The points, the symmetries that may belong to the group, and the empty slots that they ask for.
+class GroupSearch {
+public:
+    GroupSearch(const PointScene& scene, const std::vector<Symmetry>& symmetries)
+        : scene_(scene), symmetries_(symmetries) {
+        const auto n = static_cast<double>(scene.size());
+        for (int i = 0; i < scene.size(); ++i) middle_ += to_vector(scene.position(i)) / n;
+        std::vector<Point> positions;
+        Matrix3d spread = Matrix3d::Zero();
+        for (int i = 0; i < scene.size(); ++i) {
+            places_.push_back(to_vector(scene.position(i)) - middle_);
+            positions.push_back(to_point(places_.back()));
+            spread += places_.back() * places_.back().transpose();
+            radius_ = std::max(radius_, places_.back().norm());
+        }
+        grid_ = PointGrid(positions);
+        gap_ = nearest_gap();
+        const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(spread / n);
+        extent_ = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
+        axes_ = solver.eigenvectors();
+    }
+
+    PointGroup run(std::vector<Symmetry>& symmetries) {
+        collect();
+        PointGroup group;
+        group.center = to_point(middle_);
+        group.schoenflies = "C1";
+        group.hermann_mauguin = "1";
+        if (candidates_.empty()) return group;
+        // With slots for the full group, or for those alone that need none.
+        for (const bool complete : {false, true}) {
+            grow(complete);
+            if (!slots_too_many()) break;
+        }
+        if (slots_too_many() || elements_.empty()) return group;
+        name(group);
+        group.empty_slots = static_cast<int>(slots_.size());
+        for (const std::size_t m : members_) add_slots(symmetries[m]);
+        return group;
+    }
+
+private:
+    struct Candidate {
+        std::size_t id;
+        RigidMap map;
+        double slack;
+        std::vector<std::pair<Vector3d, int>> holes;  // where points go that there is none, and their labels
+    };
+
+    bool point_near(const Vector3d& place, int label, double reach) const {
+        bool found = false;
+        grid_.visit_ball(to_point(place), reach, [&](int j, double) {
+            found = scene_.label(j) == label;
+            return !found;
+        });
+        return found;
+    }
+
+    /// The least distance between two points.
+    double nearest_gap() const {
+        double best = 4 * radius_ * radius_;
+        for (std::size_t i = 0; i < places_.size(); ++i)
+            grid_.visit_ball(to_point(places_[i]), std::sqrt(best), [&](int j, double square) {
+                if (static_cast<std::size_t>(j) != i) best = std::min(best, square);
+                return true;
+            });
+        return std::sqrt(best);
+    }
+
+    /// Symmetries of no more than a few holes.
+    void collect() {
+        for (std::size_t k = 0; k < symmetries_.size(); ++k) {
+            const Symmetry& s = symmetries_[k];
+            if (s.type == SymmetryType::translation || s.type == SymmetryType::screw ||
+                s.type == SymmetryType::glide_reflection)
+                continue;
+            // A tolerance of the size of the gaps between points says nothing about their places.
+            if (s.coverage < 0.5 || s.deviation.max > 0.2 * gap_ || s.significance > 1) continue;
+            Candidate c{k, map_of(s, middle_), std::max({1.5 * s.deviation.max, 2 * scene_.resolution}), {}};
+            for (const bool back : {false, true})
+                for (int i = 0; i < scene_.size(); ++i) {
+                    const Vector3d& p = places_[static_cast<std::size_t>(i)];
+                    const Vector3d image =
+                        back ? Vector3d(c.map.linear.transpose() * (p - c.map.shift)) : c.map(p);
+                    if (!point_near(image, scene_.label(i), 1.5 * c.slack))
+                        c.holes.emplace_back(image, scene_.label(i));
+                }
+            if (c.holes.size() <= 2 * most_slots()) candidates_.push_back(std::move(c));
+        }
+    }
+
+    /// One point may always be lost; more only from many, or any set would be part of a larger one.
+    std::size_t most_slots() const {
+        return std::max<std::size_t>(1, static_cast<std::size_t>(scene_.size()) / 8);
+    }
+    bool slots_too_many() const { return slots_.size() > most_slots(); }
+
+    /// Candidates whose holes agree, best rank first, both ways; then products while these are listed.
+    void grow(bool complete) {
+        elements_.clear();
+        members_.clear();
+        slots_.clear();
+        tolerance_ = 0;
+        for (const Candidate& c : candidates_) {
+            if (complete && !c.holes.empty()) continue;
+            const double tolerance = std::max(tolerance_, c.slack);
+            std::vector<std::pair<Vector3d, int>> slots = slots_;
+            for (const auto& [place, label] : c.holes) {
+                const bool known =
+                    std::any_of(slots.begin(), slots.end(), [&, p = place, l = label](const auto& s) {
+                        return s.second == l && (s.first - p).norm() <= 3 * tolerance;
+                    });
+                if (!known) slots.emplace_back(place, label);
+            }
+            if (slots.size() > most_slots()) continue;
+            slots_ = std::move(slots);
+            tolerance_ = tolerance;
+            members_.push_back(c.id);
+            add_element(c.map.linear);
+            add_element(c.map.linear.transpose());
+        }
+        if (scene_.dimension() == 3 && extent_[0] <= tolerance_) {
+            // The plane of a flat set is a mirror that moves no point.
+            const std::vector<Matrix3d> flat = elements_;
+            const Matrix3d mirror = Matrix3d::Identity() - 2 * axes_.col(0) * axes_.col(0).transpose();
+            add_element(mirror);
+            for (const Matrix3d& m : flat) add_element(mirror * m);
+        }
+        close();
+    }
+
+    void add_element(const Matrix3d& m) {
+        for (const Matrix3d& e : elements_)
+            if ((e - m).norm() < 2 * kSameMap) return;
+        elements_.push_back(m);
+    }
+
+    /// What is a symmetry to its tolerance may lack a product that is one to slightly more.
+    void close() {
+        constexpr std::size_t kMost = 400;
+        for (std::size_t a = 0; a < elements_.size() && elements_.size() < kMost; ++a)
+            for (std::size_t b = 0; b <= a; ++b) {
+                const Matrix3d first = elements_[a] * elements_[b], second = elements_[b] * elements_[a];
+                add_element(first);
+                add_element(second);
+            }
+    }
+
+    void name(PointGroup& group) const {
+        if (scene_.dimension() == 3 && extent_[1] <= tolerance_) {
+            // All on one line: turns about it by any angle.
+            const bool swaps = std::any_of(elements_.begin(), elements_.end(), [&](const Matrix3d& m) {
+                return (m * axes_.col(2)).dot(axes_.col(2)) < 0;
+            });
+            group.schoenflies = swaps ? "Dinfh" : "Cinfv";
+            group.hermann_mauguin = swaps ? "inf/mm" : "inf m";
+        } else {
+            const GroupName n = name_group(elements_, scene_.dimension());
+            group.schoenflies = n.schoenflies;
+            group.hermann_mauguin = n.hermann_mauguin;
+        }
+        Vector3d sum = Vector3d::Zero();
+        for (const Vector3d& p : places_) sum += p;
+        for (const auto& [place, label] : slots_) sum += place;
+        group.center = to_point(middle_ + sum / static_cast<double>(places_.size() + slots_.size()));
+    }
+
+    void add_slots(Symmetry& s) const {
+        for (const auto& [place, label] : slots_) {
+            const Vector3d slot = place + middle_;
+            const bool known = std::any_of(s.missing.begin(), s.missing.end(), [&](const Point& p) {
+                return (to_vector(p) - slot).norm() <= 3 * tolerance_;
+            });
+            if (!known) s.missing.push_back(to_point(slot));
+        }
+    }
+
+    const PointScene& scene_;
+    const std::vector<Symmetry>& symmetries_;
+    Vector3d middle_ = Vector3d::Zero();
+    std::vector<Vector3d> places_;
+    PointGrid grid_{{}};
+    double radius_ = 0;
+    double gap_ = 0;
+    Vector3d extent_;
+    Matrix3d axes_;
+    double tolerance_ = 0;
+    std::vector<Candidate> candidates_;
+    std::vector<Matrix3d> elements_;
+    std::vector<std::size_t> members_;
+    std::vector<std::pair<Vector3d, int>> slots_;
+};
+
+}  // namespace
+
+PointGroup point_group(const PointScene& scene, std::vector<Symmetry>& symmetries) {
+    return GroupSearch(scene, symmetries).run(symmetries);
+}
+
+}  // namespace insym

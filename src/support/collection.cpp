@@ -1,0 +1,94 @@
+#include "support/collection.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace insym {
+namespace {
+
+bool improper(SymmetryType type) {
+    return is_improper(type, 3);
+}
+
+bool may_be(SymmetryType suggested, SymmetryType kept) {
+    if (suggested == kept) return true;
+    if (suggested == SymmetryType::screw) return !improper(kept);
+    if (suggested == SymmetryType::rotation) return kept == SymmetryType::half_turn;
+    if (suggested == SymmetryType::rotation_reflection) return improper(kept);
+    return false;
+}
+
+}  // namespace
+
+bool has_link(const Support& support, int from, int to) {
+    return std::binary_search(support.links.begin(), support.links.end(), std::pair(from, to));
+}
+
+bool Collection::explains(const Hypothesis& h) const {
+    if (h.from[0] < 0) return false;
+    const auto found = by_link_.find(key(h.from[0], h.to[0]));
+    if (found == by_link_.end()) return false;
+    for (const int id : found->second) {
+        const Support& s = supports_[static_cast<std::size_t>(id)];
+        if (!may_be(h.type, s.type)) continue;
+        bool forward = true, backward = true;
+        for (std::size_t k = 0; k < h.from.size() && h.from[k] >= 0; ++k) {
+            forward = forward && has_link(s, h.from[k], h.to[k]);
+            backward = backward && has_link(s, h.to[k], h.from[k]);
+        }
+        if (forward || backward) return true;
+    }
+    return false;
+}
+
+int Collection::same(const Support& support) const {
+    constexpr double kShare = 0.8;
+    const auto size = static_cast<double>(support.links.size());
+    std::vector<int> seen;
+    // Some links in common is enough to find it.
+    const std::size_t step = std::max<std::size_t>(1, support.links.size() / 8);
+    for (std::size_t k = 0; k < support.links.size(); k += step) {
+        const auto found = by_link_.find(key(support.links[k].first, support.links[k].second));
+        if (found != by_link_.end()) seen.insert(seen.end(), found->second.begin(), found->second.end());
+    }
+    std::sort(seen.begin(), seen.end());
+    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+    for (const int id : seen) {
+        const Support& other = supports_[static_cast<std::size_t>(id)];
+        // The links of one, or nearly so, among those of the other of the same kind: a part of it.
+        const auto larger = std::max(size, static_cast<double>(other.links.size()));
+        const double smaller = std::min(size, static_cast<double>(other.links.size()));
+        const double needed = kShare * (other.type == support.type ? smaller : larger);
+        if (smaller < needed) continue;
+        int forward = 0, backward = 0;
+        for (const auto& [from, to] : support.links) {
+            forward += has_link(other, from, to) ? 1 : 0;
+            backward += has_link(other, to, from) ? 1 : 0;
+        }
+        if (std::max(forward, backward) >= needed) return id;
+    }
+    return -1;
+}
+
+void Collection::enter(int id) {
+    for (const auto& [from, to] : supports_[static_cast<std::size_t>(id)].links) {
+        std::vector<int>& ids = by_link_[key(from, to)];
+        if (ids.empty() || ids.back() != id) ids.push_back(id);
+    }
+}
+
+bool Collection::add(Support support) {
+    const int id = same(support);
+    if (id < 0) {
+        supports_.push_back(std::move(support));
+        enter(static_cast<int>(supports_.size()) - 1);
+        return true;
+    }
+    Support& kept = supports_[static_cast<std::size_t>(id)];
+    if (worth(kept, 3) <= worth(support, 3)) return false;
+    kept = std::move(support);
+    enter(id);
+    return true;
+}
+
+}  // namespace insym

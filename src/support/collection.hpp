@@ -1,0 +1,39 @@
+// The supports found so far, each isometry once.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "support/support.hpp"
+
+namespace insym {
+
+/// Not thread-safe. Kept in the order of arrival.
+class Collection {
+public:
+    /// True if a support that is kept holds all the links that suggest this hypothesis, in one direction.
+    bool explains(const Hypothesis& hypothesis) const;
+
+    /// Keeps a support; where one of the same links, or their inverses, is kept already, the more significant
+    /// stays. False if nothing changed.
+    bool add(Support support);
+
+    const std::vector<Support>& supports() const { return supports_; }
+
+private:
+    static std::uint64_t key(int a, int b) {
+        if (a > b) std::swap(a, b);
+        return static_cast<std::uint64_t>(a) << 32U | static_cast<std::uint32_t>(b);
+    }
+    int same(const Support& support) const;
+    void enter(int id);
+
+    std::vector<Support> supports_;
+    std::unordered_map<std::uint64_t, std::vector<int>> by_link_;
+};
+
+/// True if `support` carries `from` to `to`.
+bool has_link(const Support& support, int from, int to);
+
+}  // namespace insym

@@ -1,0 +1,311 @@
+#include "support/support.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace insym {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// next[i]: the point that i is carried to, or -1; square: how far off, squared.
+struct Gatherer::Linked {
+    std::vector<int> next;
+    std::vector<double> square;
+    std::vector<int> owner;  // of each point: who is carried to it
+    int count = 0;
+};
+
+struct Gatherer::Judged {
+    double significance = 1e9;
+    double tolerance = 0;  // where it is most significant
+    int hits = 0;
+    double wide = 0;  // the tail of the noise included
+};
+
+namespace {
+
+/// So much of the significance may go for more links.
+constexpr double kTail = 0.8;
+constexpr double kFewLinks = 4;
+
+bool improper_kind(SymmetryType type) {
+    return type == SymmetryType::mirror || type == SymmetryType::inversion ||
+           type == SymmetryType::glide_reflection || type == SymmetryType::rotation_reflection;
+}
+
+/// Links that are needed before a fit means something.
+int least_links(SymmetryType type) {
+    switch (type) {
+        case SymmetryType::mirror:
+        case SymmetryType::inversion:
+        case SymmetryType::translation:
+            return 1;
+        case SymmetryType::half_turn:
+            return 2;
+        default:
+            return 3;
+    }
+}
+
+}  // namespace
+
+double worth(const Support& support, int dimension) {
+    return support.significance * (1 - 0.1 * degrees_of_freedom(support.type, dimension));
+}
+
+Motion motion_of(const RigidMap& map, bool improper) {
+    Motion m;
+    Matrix3d turn = map.linear;
+    if (improper) {
+        // The axis of a rotation-reflection is the direction that is turned round.
+        const Matrix3d k = 2 * Matrix3d::Identity() + map.linear + map.linear.transpose();
+        m.axis = Eigen::SelfAdjointEigenSolver<Matrix3d>(k).eigenvectors().col(0);
+        turn -= 2 * (turn * m.axis) * m.axis.transpose();
+    } else {
+        const Matrix3d k = 2 * Matrix3d::Identity() - map.linear - map.linear.transpose();
+        m.axis = Eigen::SelfAdjointEigenSolver<Matrix3d>(k).eigenvectors().col(0);
+    }
+    const Vector3d twice_sine(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1));
+    m.angle = std::atan2(twice_sine.norm(), turn.trace() - 1);
+    if (m.axis.dot(twice_sine) < 0) m.axis = -m.axis;
+    const double along = m.axis.dot(map.shift);
+    m.step = improper ? (map.shift - along * m.axis).norm() : std::abs(along);
+    return m;
+}
+
+std::vector<std::pair<SymmetryType, RigidMap>> simpler_kinds(SymmetryType type, const RigidMap& map,
+                                                             const Vector3d& center, double radius,
+                                                             double slack, int dimension) {
+    std::vector<std::pair<SymmetryType, RigidMap>> out;
+    const auto about_center = [&](SymmetryType kind, const Matrix3d& linear) {
+        RigidMap m;
+        m.linear = linear;
+        m.shift = map(center) - linear * center;
+        out.emplace_back(kind, m);
+    };
+    const bool improper = improper_kind(type);
+    const Motion m = motion_of(map, improper);
+    const double turn = m.angle * radius;
+    const double half = (std::numbers::pi - m.angle) * radius;
+    const Matrix3d mirror = Matrix3d::Identity() - 2 * m.axis * m.axis.transpose();
+    if (improper) {
+        if (type == SymmetryType::rotation_reflection) {
+            if (half <= slack && dimension == 3) about_center(SymmetryType::inversion, -Matrix3d::Identity());
+            if (turn <= slack) about_center(SymmetryType::glide_reflection, mirror);
+        }
+        if ((type == SymmetryType::rotation_reflection && turn <= slack && m.step <= slack) ||
+            (type == SymmetryType::glide_reflection && m.step <= slack)) {
+            RigidMap plain;
+            plain.linear = mirror;
+            plain.shift = m.axis * m.axis.dot(map(center) - mirror * center);
+            out.emplace_back(SymmetryType::mirror, plain);
+        }
+        return out;
+    }
+    if (type == SymmetryType::translation || type == SymmetryType::half_turn) return out;
+    if (turn <= slack) about_center(SymmetryType::translation, Matrix3d::Identity());
+    if (m.step <= slack) {
+        if (half <= slack) {
+            Matrix3d turned = 2 * m.axis * m.axis.transpose() - Matrix3d::Identity();
+            if (dimension == 2) turned = Vector3d(-1, -1, 1).asDiagonal();
+            about_center(SymmetryType::half_turn, turned);
+        }
+        if (type == SymmetryType::screw && turn > slack) {
+            RigidMap flat = map;
+            flat.shift -= m.axis * m.axis.dot(map.shift);
+            out.emplace_back(SymmetryType::rotation, flat);
+        }
+    }
+    return out;
+}
+
+Gatherer::Gatherer(const Cloud& cloud, const Significance& significance, double reach)
+    : cloud_(cloud), significance_(significance) {
+    for (double level = cloud.scene().resolution; level < reach * (1 - 1e-9); level *= std::numbers::sqrt2)
+        levels_.push_back(level);
+    levels_.push_back(std::max(reach, cloud.scene().resolution));
+}
+
+void Gatherer::link(SymmetryType type, const RigidMap& map, double reach, const Vector3d* center,
+                    double radius, Linked& out) const {
+    const int n = cloud_.size();
+    const auto size = static_cast<std::size_t>(n);
+    out.next.assign(size, -1);
+    out.owner.assign(size, -1);
+    out.square.assign(size, 0);
+    out.count = 0;
+    for (int i = 0; i < n; ++i) {
+        const Vector3d& p = cloud_[i];
+        if (center != nullptr && (p - *center).squaredNorm() > radius * radius) continue;
+        double square = 0;
+        const int j = cloud_.nearest(map(p), cloud_.label(i), reach, square);
+        if (j < 0 || j == i) continue;
+        int& owner = out.owner[static_cast<std::size_t>(j)];
+        if (owner >= 0) {
+            // Both ways the nearest: the one that comes closer stays.
+            if (out.square[static_cast<std::size_t>(owner)] <= square) continue;
+            out.next[static_cast<std::size_t>(owner)] = -1;
+            --out.count;
+        }
+        owner = i;
+        out.next[static_cast<std::size_t>(i)] = j;
+        out.square[static_cast<std::size_t>(i)] = square;
+        ++out.count;
+    }
+    // A pair runs both ways, and nothing else does.
+    const bool pairs = is_pair_type(type);
+    for (int i = 0; i < n; ++i) {
+        const int j = out.next[static_cast<std::size_t>(i)];
+        if (j < 0) continue;
+        const bool back = out.next[static_cast<std::size_t>(j)] == i;
+        if (pairs ? back || (center != nullptr) : !back) continue;
+        out.next[static_cast<std::size_t>(i)] = -1;
+        --out.count;
+        if (!pairs) {
+            out.next[static_cast<std::size_t>(j)] = -1;
+            --out.count;
+        }
+    }
+}
+
+Gatherer::Judged Gatherer::judge(SymmetryType type, const Linked& linked, double reach) const {
+    const std::size_t n = linked.next.size();
+    std::vector<int> hits(levels_.size(), 0);
+    const auto level_of = [&](double square) {
+        const double distance = std::sqrt(square);
+        return static_cast<std::size_t>(std::lower_bound(levels_.begin(), levels_.end() - 1, distance) -
+                                        levels_.begin());
+    };
+    std::vector<char> seen(n, 0);
+    for (std::size_t i = 0; i < n; ++i)
+        if (linked.next[i] >= 0) ++hits[level_of(linked.square[i])];
+    // The last link of a closed orbit says nothing new.
+    for (std::size_t i = 0; i < n; ++i) {
+        if (seen[i] != 0 || linked.next[i] < 0) continue;
+        double worst = 0;
+        std::size_t k = i;
+        do {
+            seen[k] = 1;
+            worst = std::max(worst, linked.square[k]);
+            const int next = linked.next[k];
+            k = next < 0 ? n : static_cast<std::size_t>(next);
+        } while (k < n && seen[k] == 0 && linked.next[k] >= 0);
+        if (k == i) --hits[level_of(worst)];
+    }
+    Judged best;
+    std::vector<Judged> all;
+    int sum = 0;
+    for (std::size_t l = 0; l < levels_.size() && levels_[l] <= reach * (1 + 1e-9); ++l) {
+        sum += hits[l];
+        if (sum == 0 || (l > 0 && hits[l] == 0)) continue;
+        const double s = significance_.log10_false_alarms(type, {sum, 0, 0}, levels_[l]);
+        all.push_back({s, levels_[l], sum});
+        if (s < best.significance) best = all.back();
+    }
+    // The best level cuts off the tail of the noise: links that cost little belong to it as well.
+    Judged wide = best;
+    const double bound = std::max(kTail * best.significance, best.significance + kFewLinks);
+    for (const Judged& j : all)
+        if (j.tolerance > best.tolerance && j.hits > wide.hits && j.significance <= bound) wide = j;
+    best.hits = wide.hits;
+    best.wide = wide.tolerance;
+    return best;
+}
+
+RigidMap Gatherer::refit(SymmetryType type, const Linked& linked, double tolerance,
+                         const RigidMap& old) const {
+    std::vector<Link> links;
+    const double limit = tolerance * tolerance * (1 + 1e-9);
+    for (std::size_t i = 0; i < linked.next.size(); ++i)
+        if (linked.next[i] >= 0 && linked.square[i] <= limit)
+            links.push_back({cloud_[static_cast<int>(i)], cloud_[linked.next[i]]});
+    if (static_cast<int>(links.size()) < least_links(type)) return old;
+    if (type != SymmetryType::rotation || cloud_.dimension() == 2)
+        return fit_of_type(type, links, cloud_.dimension());
+    // Near enough while searching; the exact fit of a turn without a step comes at the end.
+    RigidMap map = fit_of_type(SymmetryType::screw, links, cloud_.dimension());
+    const Vector3d axis = motion_of(map, false).axis;
+    map.shift -= axis * axis.dot(map.shift);
+    return map;
+}
+
+/// A hypothesis from near points is inaccurate far away: refit it on twice as far a neighbourhood at a time.
+bool Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map) const {
+    if (!(h.radius > 0) || h.type == SymmetryType::translation || h.type == SymmetryType::inversion)
+        return true;
+    Linked linked;
+    const double far = cloud_.radius() + h.center.norm();
+    for (double radius = 2 * h.radius; radius < far; radius *= 2) {
+        link(h.type, map, reach, &h.center, radius, linked);
+        if (linked.count < least_links(h.type)) continue;
+        const Judged judged = judge(h.type, linked, reach);
+        map = refit(h.type, linked, judged.tolerance, map);
+    }
+    return true;
+}
+
+std::optional<Support> Gatherer::settle(SymmetryType type, RigidMap map, double reach, double worst) const {
+    constexpr int kRounds = 5;
+    Linked linked;
+    std::vector<int> last;
+    Support best;
+    best.significance = 1e9;
+    for (int round = 0; round < kRounds; ++round) {
+        link(type, map, reach, nullptr, 0, linked);
+        const Judged judged = judge(type, linked, reach);
+        if (judged.significance < best.significance) {
+            best.type = type;
+            best.map = map;
+            best.tolerance = judged.wide;
+            best.significance = judged.significance;
+            best.hits = judged.hits;
+            best.links.clear();
+            const double limit = judged.wide * judged.wide * (1 + 1e-9);
+            for (std::size_t i = 0; i < linked.next.size(); ++i)
+                if (linked.next[i] >= 0 && linked.square[i] <= limit)
+                    best.links.emplace_back(static_cast<int>(i), linked.next[i]);
+        }
+        // What chance alone would do is not worth another look.
+        if (judged.significance > worst + 4 || linked.next == last) break;
+        last = linked.next;
+        const RigidMap better = refit(type, linked, judged.wide, map);
+        if ((better.linear - map.linear).norm() * cloud_.radius() + (better.shift - map.shift).norm() <
+            1e-3 * cloud_.scene().resolution)
+            break;
+        map = better;
+    }
+    if (best.significance > worst) return std::nullopt;
+    return best;
+}
+
+std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double worst) const {
+    // What its points agree on so well is not looked for much farther off.
+    constexpr double kLever = 12;
+    const double near = std::clamp(kLever * hypothesis.off, 8 * cloud_.scene().resolution, reach());
+    RigidMap map = hypothesis.map;
+    if (!grow(hypothesis, near, map)) return std::nullopt;
+    std::optional<Support> best = settle(hypothesis.type, map, near, worst + 3);
+    if (!best) return std::nullopt;
+    if (near < reach()) {
+        const auto wider = settle(best->type, best->map, reach(), worst + 3);
+        if (wider && wider->significance < best->significance) best = wider;
+    }
+    Vector3d center = Vector3d::Zero();
+    for (const auto& [from, to] : best->links)
+        center += cloud_[from] / static_cast<double>(best->links.size());
+    double radius = 0;
+    for (const auto& [from, to] : best->links) radius = std::max(radius, (cloud_[from] - center).norm());
+    for (const auto& [type, plain] :
+         simpler_kinds(best->type, best->map, center, radius, 4 * best->tolerance, cloud_.dimension())) {
+        const auto other = settle(type, plain, reach(), worst);
+        if (other && worth(*other, cloud_.dimension()) <= worth(*best, cloud_.dimension())) best = other;
+    }
+    if (best->significance > worst) return std::nullopt;
+    return best;
+}
+
+}  // namespace insym

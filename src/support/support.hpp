@@ -1,0 +1,71 @@
+// All the points that an isometry carries to points, both ways and uniquely, and the isometry and the
+// tolerance that they suggest (definitions, section 8).
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "hypotheses/hypothesis.hpp"
+#include "ranking/significance.hpp"
+#include "support/cloud.hpp"
+
+namespace insym {
+
+/// An isometry with the links it rests on.
+struct Support {
+    SymmetryType type = SymmetryType::mirror;
+    RigidMap map;
+    double tolerance = 0;                    ///< every link is met within
+    std::vector<std::pair<int, int>> links;  ///< ascending
+    int hits = 0;                            ///< see Evidence
+    double significance = 0;
+};
+
+/// Of two kinds that say the same links the simpler one is meant, unless it is clearly less significant: the
+/// freedom of the other always fits a little better. Lower is better.
+double worth(const Support& support, int dimension);
+
+/// Gathers and judges. Immutable, thread-safe.
+class Gatherer {
+public:
+    /// `reach`: the largest tolerance that is looked at.
+    Gatherer(const Cloud& cloud, const Significance& significance, double reach);
+
+    /// Grows the support of a hypothesis outward from its points, refits it, takes the tolerance at which it
+    /// is most significant and the simplest kind that explains as much. Nothing where that stays above
+    /// `worst`.
+    std::optional<Support> gather(const Hypothesis& hypothesis, double worst) const;
+
+    const std::vector<double>& levels() const { return levels_; }
+    double reach() const { return levels_.back(); }
+
+private:
+    struct Linked;
+    struct Judged;
+    void link(SymmetryType type, const RigidMap& map, double reach, const Eigen::Vector3d* center,
+              double radius, Linked& out) const;
+    Judged judge(SymmetryType type, const Linked& linked, double reach) const;
+    RigidMap refit(SymmetryType type, const Linked& linked, double tolerance, const RigidMap& old) const;
+    std::optional<Support> settle(SymmetryType type, RigidMap map, double reach, double worst) const;
+    bool grow(const Hypothesis& hypothesis, double reach, RigidMap& map) const;
+
+    const Cloud& cloud_;
+    const Significance& significance_;
+    std::vector<double> levels_;
+};
+
+/// The kinds that `map` is within `slack` of, over a ball of `radius` about `center`; the map as that kind.
+std::vector<std::pair<SymmetryType, RigidMap>> simpler_kinds(SymmetryType type, const RigidMap& map,
+                                                             const Eigen::Vector3d& center, double radius,
+                                                             double slack, int dimension);
+
+/// Angle of the turn of a map about its axis, 0..pi, its reflection undone; and the steps.
+struct Motion {
+    double angle = 0;  ///< C, W, S: radians
+    double step = 0;   ///< along the axis (proper) or, where the linear part is a reflection, in its plane
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+};
+Motion motion_of(const RigidMap& map, bool improper);
+
+}  // namespace insym
