@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "hypotheses/generators.hpp"
@@ -39,6 +40,42 @@ double affordable(double expected_per_reach, double budget, double exponent, dou
     return std::min(reach, std::pow(budget / expected_per_reach, 1 / exponent));
 }
 
+/// The best of many candidates: no more than twice `most` are kept at a time.
+class BestCandidates {
+public:
+    explicit BestCandidates(std::size_t most) : most_(most) {}
+
+    void add(const Candidate& candidate) {
+        if (candidate.rank > worst_) return;
+        found_.push_back(candidate);
+        if (found_.size() >= 2 * most_ + 1000) cut();
+    }
+
+    std::vector<Candidate> sorted() {
+        cut();
+        std::sort(found_.begin(), found_.end(), before);
+        return std::move(found_);
+    }
+
+private:
+    static bool before(const Candidate& x, const Candidate& y) {
+        if (x.rank != y.rank) return x.rank < y.rank;
+        return x.points != y.points ? x.points < y.points : x.type < y.type;
+    }
+
+    void cut() {
+        if (found_.size() <= most_) return;
+        const auto end = found_.begin() + static_cast<std::ptrdiff_t>(most_);
+        std::nth_element(found_.begin(), end, found_.end(), before);
+        worst_ = end->rank;
+        found_.resize(most_);
+    }
+
+    std::size_t most_;
+    double worst_ = std::numeric_limits<double>::infinity();
+    std::vector<Candidate> found_;
+};
+
 /// A turn about the circle through three points.
 bool ring_through(const Vector3d& a, const Vector3d& b, const Vector3d& c, Vector3d& center, Vector3d& axis) {
     const Vector3d u = a - b, v = c - b;
@@ -50,10 +87,27 @@ bool ring_through(const Vector3d& a, const Vector3d& b, const Vector3d& c, Vecto
     return true;
 }
 
+/// A turn that takes three points on; false where they are (nearly) in a row.
+bool ring_map(const Vector3d& a, const Vector3d& b, const Vector3d& c, RigidMap& map, double& angle,
+              double& radius) {
+    Vector3d center, axis;
+    if (!ring_through(a, b, c, center, axis)) return false;
+    const Vector3d u = a - center, v = b - center;
+    angle = std::atan2(u.cross(v).dot(axis), u.dot(v));
+    radius = u.norm();
+    map.linear = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+    map.shift = center - map.linear * center;
+    return true;
+}
+
 class ChainSearch {
 public:
-    ChainSearch(const Cloud& cloud, const SearchGroup& group, double reach)
-        : cloud_(cloud), group_(group), distances_(positions(cloud, group)), reach_(reach) {
+    ChainSearch(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most)
+        : cloud_(cloud),
+          group_(group),
+          distances_(positions(cloud, group)),
+          reach_(reach),
+          best_(most) {
         const auto n = static_cast<double>(group.size());
         three_ = affordable(1.5 * n * n * n / cloud.scene().diameter, 6e4, 1, reach);
         four_ = affordable(27 * n * n * n * n / std::pow(cloud.scene().diameter, 3), 1e4, 3, reach);
@@ -61,7 +115,7 @@ public:
         four_ = std::max(four_, 2 * cloud.scene().resolution);
     }
 
-    std::vector<Hypothesis> run(std::size_t most) {
+    std::vector<Candidate> run() {
         const int n = static_cast<int>(group_.size());
         const double slack = std::max(three_, four_);
         for (int b = 0; b < n; ++b) {
@@ -73,21 +127,10 @@ public:
                     triple(order[i], b, order[j]);
                 }
         }
-        std::stable_sort(found_.begin(), found_.end(),
-                         [](const Sized& x, const Sized& y) { return x.rank < y.rank; });
-        if (found_.size() > most) found_.resize(most);
-        std::vector<Hypothesis> out;
-        out.reserve(found_.size());
-        for (Sized& s : found_) out.push_back(s.hypothesis);
-        return out;
+        return best_.sorted();
     }
 
 private:
-    struct Sized {
-        double rank;
-        Hypothesis hypothesis;
-    };
-
     const Vector3d& at(int i) const { return cloud_[group_[static_cast<std::size_t>(i)]]; }
 
     void triple(int a, int b, int c) {
@@ -106,14 +149,9 @@ private:
     }
 
     void ring(int a, int b, int c) {
-        Vector3d center, axis;
-        if (!ring_through(at(a), at(b), at(c), center, axis)) return;
-        const Vector3d u = at(a) - center, v = at(b) - center;
-        const double angle = std::atan2(u.cross(v).dot(axis), u.dot(v));
-        const double radius = u.norm();
         RigidMap map;
-        map.linear = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
-        map.shift = center - map.linear * center;
+        double angle = 0, radius = 0;
+        if (!ring_map(at(a), at(b), at(c), map, angle, radius)) return;
         // One more point of the ring, at either end or one step beyond; a triangle is whole as it is.
         constexpr double kThird = 2.0943951023931953;
         const bool triangle = std::abs(std::abs(angle) - kThird) * radius <= three_;
@@ -134,14 +172,11 @@ private:
             if (!more) return;
             fourth = std::sqrt(square);
         }
-        Hypothesis h;
-        h.type = SymmetryType::rotation;
-        h.map = map;
         const double off = std::max(std::abs(distances_(a, b) - distances_(b, c)), floor());
         const auto n = static_cast<double>(group_.size());
         const double beyond = std::max(fourth, floor()) / cloud_.scene().diameter;
         // As many rings as good are there by chance.
-        add(h, {a, b, c}, off,
+        add(SymmetryType::rotation, {a, b, c, -1}, radius,
             4 * n * n * n * off / cloud_.scene().diameter *
                 (triangle ? beyond : 20 * n * beyond * beyond * beyond));
     }
@@ -154,29 +189,18 @@ private:
                                      std::abs(distances_(a, c) - distances_(b, d)), floor()});
         const double chance =
             std::pow(static_cast<double>(group_.size()), 4) * 27 * std::pow(off / cloud_.scene().diameter, 3);
-        for (const bool improper : {false, true}) {
-            Hypothesis h;
-            h.type = improper ? SymmetryType::rotation_reflection : SymmetryType::screw;
-            if (cloud_.dimension() == 2)
-                h.type = improper ? SymmetryType::glide_reflection : SymmetryType::rotation;
-            h.map = carry({at(a), at(b), at(c)}, {at(b), at(c), at(d)}, improper);
-            if (cloud_.dimension() == 2 && (h.map.linear(2, 2) < 0)) continue;
-            add(h, {a, b, c, d}, off, chance);
-        }
+        const double radius = std::max(distances_(a, c), distances_(a, d)) / 2;
+        const bool plane = cloud_.dimension() == 2;
+        add(plane ? SymmetryType::rotation : SymmetryType::screw, {a, b, c, d}, radius, chance);
+        add(plane ? SymmetryType::glide_reflection : SymmetryType::rotation_reflection, {a, b, c, d}, radius,
+            chance);
     }
 
     /// The least of a chance first, and short steps before long ones.
-    void add(Hypothesis& h, std::initializer_list<int> chain, double off, double chance) {
-        const auto count = static_cast<double>(chain.size());
-        for (const int i : chain) h.center += at(i) / count;
-        for (const int i : chain) h.radius = std::max(h.radius, (at(i) - h.center).norm());
-        std::size_t k = 0;
-        for (auto it = chain.begin(); it + 1 != chain.end(); ++it, ++k) {
-            h.from[k] = group_[static_cast<std::size_t>(*it)];
-            h.to[k] = group_[static_cast<std::size_t>(*(it + 1))];
-        }
-        h.off = off;
-        found_.push_back({chance * (1 + 0.1 * h.radius / cloud_.radius()), h});
+    void add(SymmetryType type, std::array<int, 4> chain, double radius, double chance) {
+        for (int& i : chain)
+            if (i >= 0) i = group_[static_cast<std::size_t>(i)];
+        best_.add({chance * (1 + 0.1 * radius / cloud_.radius()), type, chain});
     }
 
     const Cloud& cloud_;
@@ -185,23 +209,34 @@ private:
     double reach_;
     double three_ = 0;
     double four_ = 0;
-    std::vector<Sized> found_;
+    BestCandidates best_;
 };
+
+/// Along the axis of the half-turn that swaps A, A' and B, B'; as long as it is known well.
+Vector3d half_turn_axis(const Cloud& cloud, const std::array<int, 4>& points) {
+    const Vector3d &a = cloud[points[0]], &mate = cloud[points[1]], &b = cloud[points[2]],
+                   &other = cloud[points[3]];
+    const Vector3d u = (a - mate) / 2, v = (b - other) / 2;
+    // The axis goes through both middles, and across both pairs: the better known of the two.
+    const Vector3d along = (b + other - a - mate) / 2, across = u.cross(v) / std::max(u.norm(), v.norm());
+    return along.norm() > across.norm() ? along : across;
+}
 
 /// Half-turns as pairs of pairs. A's mates are all points; B is one of a sample, nearest first.
 class HalfTurnSearch {
 public:
-    HalfTurnSearch(const Cloud& cloud, const SearchGroup& group, double reach)
-        : cloud_(cloud), group_(group), distances_(positions(cloud, group)) {
+    HalfTurnSearch(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most)
+        : cloud_(cloud), group_(group), distances_(positions(cloud, group)), best_(most) {
         const auto n = static_cast<double>(group.size());
         slack_ = affordable(9 * n * n * n * n / 8 / std::pow(cloud.scene().diameter, 2), 1e4, 2, reach);
         slack_ = std::max(slack_, 2 * cloud.scene().resolution);
     }
 
-    std::vector<Hypothesis> run(std::size_t most) {
+    std::vector<Candidate> run() {
+        constexpr double kLooks = 1e6;
         const int n = static_cast<int>(group_.size());
-        const int picks = std::max(4, std::min(n, static_cast<int>(4e6 / n / n)));
-        for (int a = 0; a < n && found_.size() < 50 * most; ++a)
+        const int picks = std::max(4, std::min(n, static_cast<int>(kLooks / n / n)));
+        for (int a = 0; a < n; ++a)
             for (int mate = a + 1; mate < n; ++mate)
                 for (int k = 0; k < picks; ++k) {
                     const int b =
@@ -209,10 +244,7 @@ public:
                                    : static_cast<int>((static_cast<long>(k) * n + a * 7 + mate) / picks) % n;
                     if (b != a && b != mate) partner(a, mate, b);
                 }
-        std::stable_sort(found_.begin(), found_.end(),
-                         [](const Hypothesis& x, const Hypothesis& y) { return x.off < y.off; });
-        if (found_.size() > most) found_.resize(most);
-        return std::move(found_);
+        return best_.sorted();
     }
 
 private:
@@ -229,45 +261,77 @@ private:
     }
 
     void add(int a, int mate, int b, int other) {
-        const Vector3d p = (at(a) + at(mate)) / 2, q = (at(b) + at(other)) / 2;
-        const Vector3d u = (at(a) - at(mate)) / 2, v = (at(b) - at(other)) / 2;
-        // The axis goes through both middles, and across both pairs: the better known of the two.
-        const Vector3d along = q - p, across = u.cross(v) / std::max(u.norm(), v.norm());
-        Vector3d axis = along.norm() > across.norm() ? along : across;
-        if (!(axis.norm() > 4 * slack_)) return;
-        axis.normalize();
-        Hypothesis h;
-        h.type = SymmetryType::half_turn;
-        h.map.linear = 2 * axis * axis.transpose() - Matrix3d::Identity();
-        h.center = (p + q) / 2;
-        h.map.shift = h.center - h.map.linear * h.center;
-        h.radius = std::max({u.norm(), v.norm(), along.norm() / 2});
         const auto id = [&](int i) { return group_[static_cast<std::size_t>(i)]; };
-        h.off = std::max(std::abs(distances_(a, b) - distances_(mate, other)),
-                         std::abs(distances_(a, other) - distances_(mate, b)));
-        h.from = {id(a), id(b), -1, -1};
-        h.to = {id(mate), id(other), -1, -1};
-        found_.push_back(h);
+        const std::array<int, 4> points{id(a), id(mate), id(b), id(other)};
+        if (!(half_turn_axis(cloud_, points).norm() > 4 * slack_)) return;
+        const double off = std::max({std::abs(distances_(a, b) - distances_(mate, other)),
+                                     std::abs(distances_(a, other) - distances_(mate, b)),
+                                     cloud_.scene().resolution});
+        best_.add({off, SymmetryType::half_turn, points});
     }
 
     const Cloud& cloud_;
     const SearchGroup& group_;
     const Distances distances_;
     double slack_ = 0;
-    std::vector<Hypothesis> found_;
+    BestCandidates best_;
 };
+
+Hypothesis half_turn_of(const Cloud& cloud, const std::array<int, 4>& points) {
+    const Vector3d &a = cloud[points[0]], &mate = cloud[points[1]], &b = cloud[points[2]],
+                   &other = cloud[points[3]];
+    const Vector3d axis = half_turn_axis(cloud, points).normalized();
+    Hypothesis h;
+    h.type = SymmetryType::half_turn;
+    h.map.linear = 2 * axis * axis.transpose() - Matrix3d::Identity();
+    h.center = (a + mate + b + other) / 4;
+    h.map.shift = h.center - h.map.linear * h.center;
+    h.radius = std::max({(a - mate).norm(), (b - other).norm(), (a + mate - b - other).norm() / 2}) / 2;
+    h.off = std::max(std::abs((a - b).norm() - (mate - other).norm()),
+                     std::abs((a - other).norm() - (mate - b).norm()));
+    h.from = {points[0], points[2], -1, -1};
+    h.to = {points[1], points[3], -1, -1};
+    return h;
+}
 
 }  // namespace
 
-std::vector<Hypothesis> chains(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most) {
+std::vector<Candidate> chains(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most) {
     if (group.size() < 3) return {};
-    return ChainSearch(cloud, group, reach).run(most);
+    return ChainSearch(cloud, group, reach, most).run();
 }
 
-std::vector<Hypothesis> half_turns(const Cloud& cloud, const SearchGroup& group, double reach,
-                                   std::size_t most) {
+std::vector<Candidate> half_turns(const Cloud& cloud, const SearchGroup& group, double reach,
+                                  std::size_t most) {
     if (group.size() < 4 || cloud.dimension() == 2) return {};
-    return HalfTurnSearch(cloud, group, reach).run(most);
+    return HalfTurnSearch(cloud, group, reach, most).run();
+}
+
+Hypothesis hypothesis_of(const Cloud& cloud, const Candidate& candidate) {
+    const std::array<int, 4>& ids = candidate.points;
+    if (candidate.type == SymmetryType::half_turn) return half_turn_of(cloud, ids);
+    Hypothesis h;
+    h.type = candidate.type;
+    const auto at = [&](std::size_t k) -> const Vector3d& { return cloud[ids[k]]; };
+    const std::size_t length = ids[3] < 0 ? 3 : 4;
+    if (length == 3) {
+        double angle = 0, radius = 0;
+        ring_map(at(0), at(1), at(2), h.map, angle, radius);
+    } else {
+        h.map = carry({at(0), at(1), at(2)}, {at(1), at(2), at(3)}, is_improper(h.type, cloud.dimension()));
+    }
+    for (std::size_t k = 0; k < length; ++k) h.center += at(k) / static_cast<double>(length);
+    for (std::size_t k = 0; k < length; ++k) h.radius = std::max(h.radius, (at(k) - h.center).norm());
+    for (std::size_t k = 0; k + 1 < length; ++k) {
+        h.from[k] = ids[k];
+        h.to[k] = ids[k + 1];
+    }
+    const double step = (at(0) - at(1)).norm();
+    h.off = std::max(std::abs(step - (at(1) - at(2)).norm()), cloud.scene().resolution);
+    if (length == 4)
+        h.off = std::max({h.off, std::abs((at(1) - at(2)).norm() - (at(2) - at(3)).norm()),
+                          std::abs((at(0) - at(2)).norm() - (at(1) - at(3)).norm())});
+    return h;
 }
 
 std::vector<Hypothesis> frames(const Cloud& cloud, const Vector3d& center, double reach, std::size_t most) {

@@ -1,6 +1,7 @@
 // Where method `robust` looks: isometries that pairs, chains and frames of points suggest.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "hypotheses/hypothesis.hpp"
@@ -22,13 +23,26 @@ std::vector<SearchGroup> search_groups(const Cloud& cloud, std::size_t most);
 std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, double reach, std::size_t most_pairs,
                              std::size_t most);
 
-/// Half-turns from two pairs A, A' and B, B' with |AB| = |A'B'| and |AB'| = |A'B|.
-std::vector<Hypothesis> half_turns(const Cloud& cloud, const SearchGroup& group, double reach,
-                                   std::size_t most);
+/// A chain of points, or two pairs, that may be carried into one another. Small, as there are many.
+struct Candidate {
+    double rank = 0;  ///< the lower, the less likely by chance
+    SymmetryType type = SymmetryType::screw;
+    /// rotation of three points A, B, C (the last is -1); half-turn: A, A', B, B'; else A to B to C to D.
+    std::array<int, 4> points{{-1, -1, -1, -1}};
+};
+
+/// Half-turns from two pairs A, A' and B, B' with |AB| = |A'B'| and |AB'| = |A'B|. The `most` that agree best,
+/// best first.
+std::vector<Candidate> half_turns(const Cloud& cloud, const SearchGroup& group, double reach,
+                                  std::size_t most);
 
 /// Rotations from three points A, B, C with |AB| = |BC|, one of whose neighbours on the ring is there; every
-/// other kind from four with |AB| = |BC| = |CD| and |AC| = |BD|. Short steps first.
-std::vector<Hypothesis> chains(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most);
+/// other kind from four with |AB| = |BC| = |CD| and |AC| = |BD|. The `most` that chance explains least, best
+/// first.
+std::vector<Candidate> chains(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most);
+
+/// The isometry that a candidate stands for.
+Hypothesis hypothesis_of(const Cloud& cloud, const Candidate& candidate);
 
 /// Isometries that leave `center` in place, from the images of two points of the smallest shells about it:
 /// every symmetry of the whole set is among them if that is its centre.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 
 #include "hypotheses/generators.hpp"
 
@@ -18,6 +19,8 @@ struct Ballot {
     Vector3d place;  // where in the space of isometries
     int from, to;
 };
+
+constexpr int kFewVotes = 3;  // chance does as well with less
 
 /// What a pair votes for, as a point: a translation's vector, an inversion's centre, a mirror's image of a
 /// point far outside (which no plane through the set comes near).
@@ -136,36 +139,40 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, double reach
         bool operator<(const Ranked& o) const { return votes != o.votes ? votes > o.votes : first < o.first; }
     };
     std::vector<Hypothesis> out;
+    std::vector<int> alive(ballots.size());  // those that are not alone in a wider cell
+    std::iota(alive.begin(), alive.end(), 0);
     for (const double size : sizes) {
-        Cells cells(ballots.size());
-        const auto at = [&](const Vector3d& p, int k) { return p[k] / size; };
-        const auto whole = [&](const Vector3d& p, int k) {
-            return static_cast<std::int64_t>(std::floor(at(p, k)));
+        Cells cells(alive.size());
+        const auto home_of = [&](const Vector3d& p) {
+            return Eigen::Array<std::int64_t, 3, 1>((p.array() / size).floor().cast<std::int64_t>());
         };
-        for (std::size_t b = 0; b < ballots.size(); ++b) {
-            const Vector3d& p = ballots[b].place;
-            cells.add(key_of(whole(p, 0), whole(p, 1), whole(p, 2)), static_cast<int>(b));
+        for (const int b : alive) {
+            const auto home = home_of(ballots[static_cast<std::size_t>(b)].place);
+            cells.add(key_of(home[0], home[1], home[2]), b);
         }
-        // A cell is joined with the seven whose borders its first vote is nearest to.
         std::vector<Ranked> ranked;
-        for (const Cells::Slot& cell : cells.slots()) {
-            if (cell.count == 0) continue;
-            const Vector3d& p = ballots[static_cast<std::size_t>(cell.first)].place;
-            std::int64_t home[3], beside[3];
-            for (int k = 0; k < 3; ++k) {
-                home[k] = whole(p, k);
-                beside[k] = home[k] + (at(p, k) - static_cast<double>(home[k]) < 0.5 ? -1 : 1);
-            }
-            int votes = 0, fullest = 0;
-            for (int corner = 0; corner < 8; ++corner) {
+        std::vector<int> company;
+        for (const int b : alive) {
+            // A cell is joined with the seven whose borders the vote is nearest to.
+            const Vector3d& p = ballots[static_cast<std::size_t>(b)].place;
+            const auto home = home_of(p);
+            Eigen::Array<std::int64_t, 3, 1> beside;
+            for (int k = 0; k < 3; ++k)
+                beside[k] = home[k] + (p[k] / size - static_cast<double>(home[k]) < 0.5 ? -1 : 1);
+            const Cells::Slot& own = cells.at(key_of(home[0], home[1], home[2]));
+            int votes = own.count, fullest = own.count;
+            for (int corner = 1; corner < 8; ++corner) {
                 const auto pick = [&](int k) { return (corner >> k & 1) == 0 ? home[k] : beside[k]; };
                 const Cells::Slot& near = cells.at(key_of(pick(0), pick(1), pick(2)));
                 votes += near.count;
                 fullest = std::max(fullest, near.count);
             }
-            if (votes >= 3 && cell.count == fullest)
-                ranked.push_back({votes, static_cast<std::size_t>(cell.first)});
+            if (votes < kFewVotes) continue;
+            company.push_back(b);
+            if (own.first == b && own.count == fullest)
+                ranked.push_back({votes, static_cast<std::size_t>(b)});
         }
+        alive = std::move(company);
         std::sort(ranked.begin(), ranked.end());
         if (ranked.size() > most) ranked.resize(most);
         for (const Ranked& r : ranked) {

@@ -49,23 +49,9 @@ public:
         const auto budget = [&](double looks) {
             return static_cast<std::size_t>(100 + looks / static_cast<double>(n));
         };
-        monitor_.begin_stage("hypotheses", 6);
         offer(frames(cloud_, Vector3d::Zero(), reach, budget(1e5)));
-        constexpr std::size_t kPairs = 300000;
-        for (const SymmetryType type :
-             {SymmetryType::translation, SymmetryType::mirror, SymmetryType::inversion}) {
-            const bool central = type == SymmetryType::inversion && cloud_.dimension() == 2;
-            offer(vote(cloud_, central ? SymmetryType::half_turn : type, reach, kPairs, budget(2e4)),
-                  budget(6e4));
-            monitor_.advance();
-        }
-        constexpr std::size_t kGroup = 400;
-        for (const SearchGroup& group : search_groups(cloud_, kGroup)) {
-            if (monitor_.should_stop()) break;
-            offer(chains(cloud_, group, reach, 100000), budget(3e5));
-            offer(half_turns(cloud_, group, reach, 20000), budget(1e5));
-        }
-        monitor_.advance();
+        offer_votes(reach, budget(2e4), budget(6e4));
+        offer_groups(reach, budget(3e5), budget(1e5));
         offer_roots();
         close_products();
         RobustResult result;
@@ -76,20 +62,69 @@ public:
     }
 
 private:
+    void offer_votes(double reach, std::size_t most_cells, std::size_t most) {
+        constexpr std::size_t kPairs = 300000;
+        std::vector<SymmetryType> types{SymmetryType::translation, SymmetryType::mirror,
+                                        cloud_.dimension() == 2 ? SymmetryType::half_turn
+                                                                : SymmetryType::inversion};
+        std::vector<std::vector<Hypothesis>> votes(types.size());
+        monitor_.begin_stage("votes of pairs", types.size());
+        parallel_for(types.size(),
+                     [&](std::size_t k) { votes[k] = vote(cloud_, types[k], reach, kPairs, most_cells); });
+        for (const std::vector<Hypothesis>& v : votes) {
+            offer(v, most);
+            monitor_.advance();
+        }
+    }
+
+    /// A few groups at a time: the search for candidates needs no knowledge of what was found.
+    void offer_groups(double reach, std::size_t most_chains, std::size_t most_half_turns) {
+        constexpr std::size_t kGroup = 400, kAtATime = 16;
+        // So many candidates are kept for each that is tried: most of them say what was found already.
+        constexpr std::size_t kSpare = 20;
+        const std::vector<SearchGroup> groups = search_groups(cloud_, kGroup);
+        monitor_.begin_stage("chains of points", groups.size());
+        std::vector<std::vector<Candidate>> found(2 * kAtATime);
+        for (std::size_t first = 0; first < groups.size() && !monitor_.should_stop(); first += kAtATime) {
+            const std::size_t count = std::min(kAtATime, groups.size() - first);
+            parallel_for(2 * count, [&](std::size_t k) {
+                const SearchGroup& group = groups[first + k / 2];
+                if (monitor_.should_stop())
+                    found[k].clear();
+                else if (k % 2 == 0)
+                    found[k] = chains(cloud_, group, reach, kSpare * most_chains);
+                else
+                    found[k] = half_turns(cloud_, group, reach, kSpare * most_half_turns);
+            });
+            for (std::size_t k = 0; k < 2 * count; ++k) {
+                // What is tried in all grows with the points looked at.
+                const std::size_t most = k % 2 == 0 ? most_chains : most_half_turns;
+                offer(found[k], 20 + most * groups[first + k / 2].size() / static_cast<std::size_t>(cloud_.size()));
+                if (k % 2 == 1) monitor_.advance();
+            }
+        }
+    }
+
+    const Hypothesis& hypothesis(const Hypothesis& h) const { return h; }
+    Hypothesis hypothesis(const Candidate& c) const { return hypothesis_of(cloud_, c); }
+
     /// Tries hypotheses in their order, in blocks, so that what one finds spares the next ones the work; the
     /// blocks do not depend on the threads.
-    void offer(const std::vector<Hypothesis>& hypotheses, std::size_t most = 1000000) {
+    template <class Suggestion>
+    void offer(const std::vector<Suggestion>& suggestions, std::size_t most = 1000000) {
         constexpr std::size_t kBlock = 64;
         const std::size_t stop = tried_ + most;
         std::vector<std::optional<Support>> found(kBlock);
-        std::vector<const Hypothesis*> block;
-        for (std::size_t k = 0; k < hypotheses.size() && tried_ < stop && !monitor_.should_stop();) {
+        std::vector<Hypothesis> block;
+        for (std::size_t k = 0; k < suggestions.size() && tried_ < stop && !monitor_.should_stop();) {
             block.clear();
-            for (; k < hypotheses.size() && block.size() < kBlock; ++k)
-                if (!collection_.explains(hypotheses[k])) block.push_back(&hypotheses[k]);
+            for (; k < suggestions.size() && block.size() < kBlock; ++k) {
+                Hypothesis h = hypothesis(suggestions[k]);
+                if (!collection_.explains(h)) block.push_back(std::move(h));
+            }
             tried_ += block.size();
             parallel_for(block.size(), [&](std::size_t i) {
-                found[i] = monitor_.should_stop() ? std::nullopt : gatherer_.gather(*block[i], kKept);
+                found[i] = monitor_.should_stop() ? std::nullopt : gatherer_.gather(block[i], kKept);
             });
             for (std::size_t i = 0; i < block.size(); ++i)
                 if (found[i]) collection_.add(std::move(*found[i]));

@@ -234,9 +234,8 @@ RigidMap Gatherer::refit(SymmetryType type, const Linked& linked, double toleran
 }
 
 /// A hypothesis from near points is inaccurate far away: refit it on twice as far a neighbourhood at a time.
-bool Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map) const {
-    if (!(h.radius > 0) || h.type == SymmetryType::translation || h.type == SymmetryType::inversion)
-        return true;
+void Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map) const {
+    if (!(h.radius > 0) || h.type == SymmetryType::translation || h.type == SymmetryType::inversion) return;
     Linked linked;
     const double far = cloud_.radius() + h.center.norm();
     for (double radius = 2 * h.radius; radius < far; radius *= 2) {
@@ -245,7 +244,29 @@ bool Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map) const {
         const Judged judged = judge(h.type, linked, reach);
         map = refit(h.type, linked, judged.tolerance, map);
     }
-    return true;
+}
+
+/// A cheap look first: one more link near the points of the hypothesis, or more of a sample of all than chance
+/// would link. Most hypotheses are a chance and end here.
+bool Gatherer::promising(const Hypothesis& h, double reach) const {
+    constexpr int kSample = 128;
+    const int n = cloud_.size();
+    if (n <= kSample || h.from[0] < 0) return true;
+    const auto own = [&](int i) {
+        return std::find(h.from.begin(), h.from.end(), i) != h.from.end() ||
+               (is_pair_type(h.type) && std::find(h.to.begin(), h.to.end(), i) != h.to.end());
+    };
+    const auto linked = [&](int i) {
+        double square = 0;
+        const int j = cloud_.nearest(h.map(cloud_[i]), cloud_.label(i), reach, square);
+        return j >= 0 && j != i && !own(i);
+    };
+    const double near = 4 * h.radius * h.radius;
+    for (int i = 0; i < n; ++i)
+        if ((cloud_[i] - h.center).squaredNorm() <= near && linked(i)) return true;
+    int hits = 0;
+    for (int k = 0; k < kSample; ++k) hits += linked(static_cast<int>(static_cast<long>(k) * n / kSample)) ? 1 : 0;
+    return hits > 2 * kSample * significance_.background().chance(reach);
 }
 
 std::optional<Support> Gatherer::settle(SymmetryType type, RigidMap map, double reach, double worst) const {
@@ -286,8 +307,9 @@ std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double wor
     // What its points agree on so well is not looked for much farther off.
     constexpr double kLever = 12;
     const double near = std::clamp(kLever * hypothesis.off, 8 * cloud_.scene().resolution, reach());
+    if (!promising(hypothesis, near)) return std::nullopt;
     RigidMap map = hypothesis.map;
-    if (!grow(hypothesis, near, map)) return std::nullopt;
+    grow(hypothesis, near, map);
     std::optional<Support> best = settle(hypothesis.type, map, near, worst + 3);
     if (!best) return std::nullopt;
     if (near < reach()) {

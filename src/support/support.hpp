@@ -48,7 +48,8 @@ private:
     Judged judge(SymmetryType type, const Linked& linked, double reach) const;
     RigidMap refit(SymmetryType type, const Linked& linked, double tolerance, const RigidMap& old) const;
     std::optional<Support> settle(SymmetryType type, RigidMap map, double reach, double worst) const;
-    bool grow(const Hypothesis& hypothesis, double reach, RigidMap& map) const;
+    void grow(const Hypothesis& hypothesis, double reach, RigidMap& map) const;
+    bool promising(const Hypothesis& hypothesis, double reach) const;
 
     const Cloud& cloud_;
     const Significance& significance_;
