@@ -173,6 +173,7 @@ private:
         }
     }
 
+    /// From the end of a run on, over empty places and single points, to the next run.
     void extend(int end, const RigidMap& map, int steps, bool forward, std::vector<char>& reached) {
         std::vector<Vector3d> empty;
         Vector3d place = map(cloud_[end]);
@@ -192,7 +193,10 @@ private:
             reached[static_cast<std::size_t>(there)] = 1;
             ++pattern_.evidence.bridged;
             pattern_.missing.insert(pattern_.missing.end(), empty.begin(), empty.end());
-            return;
+            if (run >= 0) return;
+            empty.clear();
+            place = cloud_[there];
+            k = 0;
         }
     }
 
