@@ -61,7 +61,7 @@ struct Typed {
     std::string input, json, html, columns, time_limit;
     std::string points = "representative", labels = "entity", label_tolerance = "0.01", sharp_angle = "30";
     std::string import_memory = "4096", import_time = "300";
-    std::string method = "paper", types = "M,I,C2,C,T,Z,S,W";
+    std::string method = "robust", types = "M,I,C2,C,T,Z,S,W";
     std::string max_tolerance = "auto", resolution = "1e-6", limit = "20", threads = "0";
     bool quiet = false, all = false, levels = false;
 };
@@ -234,7 +234,7 @@ void declare(CLI::App& detect, Typed& typed) {
     };
     add("--json", typed.json, "FILE|-", "Write the full report; - is standard output");
     add("--html", typed.html, "FILE", "Not available yet");
-    add("--method", typed.method, "robust|paper", "Definition of a symmetry (default: paper)");
+    add("--method", typed.method, "robust|paper", "Definition of a symmetry (default: robust)");
     add("--types", typed.types, "M,I,C2,...", "Kinds to look for, see below (default: all)");
     add("--points", typed.points, "LIST",
         "Entities of a model that give points, see below (default: representative)");

@@ -44,23 +44,28 @@ PointSet merged(const PointSet& points) {
 class Stages {
 public:
     explicit Stages(const BenchCase& bench)
-        : points_(bench.points), distances_(points_.positions), scene_(scene(bench)), monitor_(context_) {}
+        : points_(bench.points),
+          distances_(points_.positions),
+          scene_(scene(bench)),
+          significance_(scene_),
+          monitor_(context_) {}
 
     CycleSearchResult cycles() { return detect_cycles(scene_, monitor_); }
     std::vector<Symmetry> symmetries(const std::vector<Cycle>& cycles) {
         return detect_symmetries(scene_, cycles, TypeSet::all(), monitor_).symmetries;
     }
-    Measure measure() const { return Measure(scene_); }
+    Measure measure() const { return {scene_, significance_}; }
 
 private:
     Scene scene(const BenchCase& bench) const {
         const double unit = diameter(points_.positions);
-        return {points_, distances_, unit, DetectOptions{}.resolution * unit, bench.max_tolerance * unit};
+        return {{points_, unit, DetectOptions{}.resolution * unit, bench.max_tolerance * unit}, distances_};
     }
 
     PointSet points_;
     Distances distances_;
     Scene scene_;
+    Significance significance_;
     RunContext context_;
     RunMonitor monitor_;
 };
@@ -108,12 +113,21 @@ void bench_measure(benchmark::State& state, const BenchCase& bench) {
     state.counters["symmetries"] = static_cast<double>(symmetries.size());
 }
 
-void bench_detect(benchmark::State& state, const BenchCase& bench) {
+void bench_detect(benchmark::State& state, const BenchCase& bench, Method method) {
     DetectOptions options;
-    options.max_tolerance = bench.max_tolerance;
+    options.method = method;
+    if (method == Method::paper) options.max_tolerance = bench.max_tolerance;
     RunContext context;
     context.threads = 1;
     for (auto _ : state) benchmark::DoNotOptimize(detect(bench.points, options, context));
+}
+
+void bench_paper(benchmark::State& state, const BenchCase& bench) {
+    bench_detect(state, bench, Method::paper);
+}
+
+void bench_robust(benchmark::State& state, const BenchCase& bench) {
+    bench_detect(state, bench, Method::robust);
 }
 
 /// Two staggered rows of pins of four corners each: points 8 * pins.
@@ -158,7 +172,8 @@ void register_stages(const BenchCase& bench) {
     add("cycles", bench_cycles);
     add("symmetries", bench_symmetries);
     add("measure", bench_measure);
-    add("detect", bench_detect);
+    add("paper", bench_paper);
+    add("robust", bench_robust);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ enum class Method {
 
 /// What to look for. The defaults suit exact and slightly noisy models.
 struct DetectOptions {
-    Method method = Method::paper;
+    Method method = Method::robust;
     TypeSet types = TypeSet::all();       ///< kinds to look for; not empty
     double resolution = 1e-6;             ///< share of the diameter, in (0, 1): equal lengths
     std::optional<double> max_tolerance;  ///< share of the diameter, in [resolution, 1]; none: auto

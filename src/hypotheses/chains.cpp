@@ -103,11 +103,7 @@ bool ring_map(const Vector3d& a, const Vector3d& b, const Vector3d& c, RigidMap&
 class ChainSearch {
 public:
     ChainSearch(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most)
-        : cloud_(cloud),
-          group_(group),
-          distances_(positions(cloud, group)),
-          reach_(reach),
-          best_(most) {
+        : cloud_(cloud), group_(group), distances_(positions(cloud, group)), reach_(reach), best_(most) {
         const auto n = static_cast<double>(group.size());
         three_ = affordable(1.5 * n * n * n / cloud.scene().diameter, 6e4, 1, reach);
         four_ = affordable(27 * n * n * n * n / std::pow(cloud.scene().diameter, 3), 1e4, 3, reach);
@@ -264,9 +260,9 @@ private:
         const auto id = [&](int i) { return group_[static_cast<std::size_t>(i)]; };
         const std::array<int, 4> points{id(a), id(mate), id(b), id(other)};
         if (!(half_turn_axis(cloud_, points).norm() > 4 * slack_)) return;
-        const double off = std::max({std::abs(distances_(a, b) - distances_(mate, other)),
-                                     std::abs(distances_(a, other) - distances_(mate, b)),
-                                     cloud_.scene().resolution});
+        const double off =
+            std::max({std::abs(distances_(a, b) - distances_(mate, other)),
+                      std::abs(distances_(a, other) - distances_(mate, b)), cloud_.scene().resolution});
         best_.add({off, SymmetryType::half_turn, points});
     }
 

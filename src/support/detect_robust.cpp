@@ -64,9 +64,9 @@ public:
 private:
     void offer_votes(double reach, std::size_t most_cells, std::size_t most) {
         constexpr std::size_t kPairs = 300000;
-        std::vector<SymmetryType> types{SymmetryType::translation, SymmetryType::mirror,
-                                        cloud_.dimension() == 2 ? SymmetryType::half_turn
-                                                                : SymmetryType::inversion};
+        std::vector<SymmetryType> types{
+            SymmetryType::translation, SymmetryType::mirror,
+            cloud_.dimension() == 2 ? SymmetryType::half_turn : SymmetryType::inversion};
         std::vector<std::vector<Hypothesis>> votes(types.size());
         monitor_.begin_stage("votes of pairs", types.size());
         parallel_for(types.size(),
@@ -99,7 +99,8 @@ private:
             for (std::size_t k = 0; k < 2 * count; ++k) {
                 // What is tried in all grows with the points looked at.
                 const std::size_t most = k % 2 == 0 ? most_chains : most_half_turns;
-                offer(found[k], 20 + most * groups[first + k / 2].size() / static_cast<std::size_t>(cloud_.size()));
+                offer(found[k],
+                      20 + most * groups[first + k / 2].size() / static_cast<std::size_t>(cloud_.size()));
                 if (k % 2 == 1) monitor_.advance();
             }
         }
@@ -131,10 +132,12 @@ private:
         }
     }
 
-    Hypothesis of_map(SymmetryType type, const RigidMap& map) const {
+    /// `off`: how well the map is known.
+    static Hypothesis of_map(SymmetryType type, const RigidMap& map, double off) {
         Hypothesis h;
         h.type = type;
         h.map = map;
+        h.off = off;
         return h;
     }
 
@@ -150,7 +153,8 @@ private:
     void add_roots(const Support& s, std::vector<Hypothesis>& out) const {
         const bool improper = s.type == SymmetryType::rotation_reflection;
         if (s.type == SymmetryType::translation) {
-            for (const double k : {2.0, 3.0}) out.push_back(of_map(s.type, {s.map.linear, s.map.shift / k}));
+            for (const double k : {2.0, 3.0})
+                out.push_back(of_map(s.type, {s.map.linear, s.map.shift / k}, s.tolerance));
             return;
         }
         if (s.type != SymmetryType::rotation && !improper) return;
@@ -163,7 +167,7 @@ private:
             map.linear = Eigen::AngleAxisd(2 * std::numbers::pi / order, motion.axis).toRotationMatrix();
             if (improper) map.linear -= 2 * (map.linear * motion.axis) * motion.axis.transpose();
             map.shift = fixed - map.linear * fixed;
-            out.push_back(of_map(s.type, map));
+            out.push_back(of_map(s.type, map, s.tolerance));
         };
         constexpr int kMostOrder = 200, kMostTries = 8;
         int tries = 0;
@@ -202,8 +206,8 @@ private:
             std::vector<Hypothesis> products;
             for (const std::size_t a : whole)
                 for (const std::size_t b : whole) {
-                    const RigidMap& f = collection_.supports()[a].map;
-                    const RigidMap& g = collection_.supports()[b].map;
+                    const Support &first = collection_.supports()[a], &second = collection_.supports()[b];
+                    const RigidMap &f = first.map, &g = second.map;
                     RigidMap product;
                     product.linear = f.linear * g.linear;
                     product.shift = f(g.shift);
@@ -211,7 +215,7 @@ private:
                     products.push_back(of_map(product.linear.determinant() < 0
                                                   ? SymmetryType::rotation_reflection
                                                   : SymmetryType::screw,
-                                              product));
+                                              product, std::max(first.tolerance, second.tolerance)));
                     if (cloud_.dimension() == 2)
                         products.back().type = product.linear.determinant() < 0
                                                    ? SymmetryType::glide_reflection

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace insym {
 
@@ -55,7 +56,8 @@ private:
         if (type != SymmetryType::rotation && type != SymmetryType::rotation_reflection) return;
         const bool improper = type == SymmetryType::rotation_reflection;
         const Motion motion = motion_of(exact_, improper);
-        const WholeOrder whole = whole_order(motion.angle, angle_slack(cloud_, pattern_.support, motion));
+        WholeOrder whole = whole_order(motion.angle, angle_slack(cloud_, pattern_.support, motion));
+        if (whole.order < 2) whole = order_of_closed_orbits(motion.angle);
         if (whole.order < 2) return;
         pattern_.period = improper && whole.order % 2 != 0 ? 2 * whole.order : whole.order;
         const double turn = 2 * std::numbers::pi * whole.turns / whole.order;
@@ -67,6 +69,25 @@ private:
         if (improper) linear = linear * (Matrix3d::Identity() - 2 * motion.axis * motion.axis.transpose());
         exact_.linear = linear;
         exact_.shift = fixed - linear * fixed;
+    }
+
+    /// An orbit of q points that closes says the order, where noise leaves the angle itself unsure.
+    WholeOrder order_of_closed_orbits(double angle) {
+        int longest = 0;
+        std::vector<char> seen(next_.size(), 0);
+        for (int start = 0; start < cloud_.size(); ++start) {
+            int length = 0, i = start;
+            while (i >= 0 && seen[static_cast<std::size_t>(i)] == 0) {
+                seen[static_cast<std::size_t>(i)] = 1;
+                i = next(i);
+                ++length;
+            }
+            if (i == start && length > longest && length <= kMostOrder) longest = length;
+        }
+        const auto turns = static_cast<int>(std::lround(angle * longest / (2 * std::numbers::pi)));
+        if (longest < 2 || turns < 1) return {};
+        const int common = std::gcd(longest, turns);
+        return {longest / common, turns / common};
     }
 
     /// Chains from their ends, then what is closed. A closed run of another length than the period is none.

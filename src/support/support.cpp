@@ -216,13 +216,30 @@ Gatherer::Judged Gatherer::judge(SymmetryType type, const Linked& linked, double
     return best;
 }
 
-RigidMap Gatherer::refit(SymmetryType type, const Linked& linked, double tolerance,
+/// The links of no more than `tolerance`; and those of up to twice as much that alone keep an orbit from
+/// closing: they count for nothing, but without them the last step of a ring would be lost to noise.
+std::vector<std::pair<int, int>> Gatherer::links_within(const Linked& linked, double tolerance) {
+    const std::size_t n = linked.next.size();
+    const double limit = tolerance * tolerance * (1 + 1e-9);
+    std::vector<char> in(n, 0), closing(n, 0);
+    for (std::size_t i = 0; i < n; ++i) in[i] = linked.next[i] >= 0 && linked.square[i] <= limit ? 1 : 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (in[i] != 0 || linked.next[i] < 0 || linked.square[i] > 4 * limit) continue;
+        auto k = static_cast<std::size_t>(linked.next[i]);
+        while (k != i && in[k] != 0) k = static_cast<std::size_t>(linked.next[k]);
+        if (k == i) closing[i] = 1;
+    }
+    std::vector<std::pair<int, int>> links;
+    for (std::size_t i = 0; i < n; ++i)
+        if (in[i] != 0 || closing[i] != 0) links.emplace_back(static_cast<int>(i), linked.next[i]);
+    return links;
+}
+
+RigidMap Gatherer::refit(SymmetryType type, const std::vector<std::pair<int, int>>& pairs,
                          const RigidMap& old) const {
     std::vector<Link> links;
-    const double limit = tolerance * tolerance * (1 + 1e-9);
-    for (std::size_t i = 0; i < linked.next.size(); ++i)
-        if (linked.next[i] >= 0 && linked.square[i] <= limit)
-            links.push_back({cloud_[static_cast<int>(i)], cloud_[linked.next[i]]});
+    links.reserve(pairs.size());
+    for (const auto& [from, to] : pairs) links.push_back({cloud_[from], cloud_[to]});
     if (static_cast<int>(links.size()) < least_links(type)) return old;
     if (type != SymmetryType::rotation || cloud_.dimension() == 2)
         return fit_of_type(type, links, cloud_.dimension());
@@ -242,12 +259,12 @@ void Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map) const {
         link(h.type, map, reach, &h.center, radius, linked);
         if (linked.count < least_links(h.type)) continue;
         const Judged judged = judge(h.type, linked, reach);
-        map = refit(h.type, linked, judged.tolerance, map);
+        map = refit(h.type, links_within(linked, judged.tolerance), map);
     }
 }
 
-/// A cheap look first: one more link near the points of the hypothesis, or more of a sample of all than chance
-/// would link. Most hypotheses are a chance and end here.
+/// A cheap look first: one more link near the points of the hypothesis, or more of a sample of all than
+/// chance would link. Most hypotheses are a chance and end here.
 bool Gatherer::promising(const Hypothesis& h, double reach) const {
     constexpr int kSample = 128;
     const int n = cloud_.size();
@@ -265,7 +282,8 @@ bool Gatherer::promising(const Hypothesis& h, double reach) const {
     for (int i = 0; i < n; ++i)
         if ((cloud_[i] - h.center).squaredNorm() <= near && linked(i)) return true;
     int hits = 0;
-    for (int k = 0; k < kSample; ++k) hits += linked(static_cast<int>(static_cast<long>(k) * n / kSample)) ? 1 : 0;
+    for (int k = 0; k < kSample; ++k)
+        hits += linked(static_cast<int>(static_cast<long>(k) * n / kSample)) ? 1 : 0;
     return hits > 2 * kSample * significance_.background().chance(reach);
 }
 
@@ -284,22 +302,19 @@ std::optional<Support> Gatherer::settle(SymmetryType type, RigidMap map, double 
             best.tolerance = judged.wide;
             best.significance = judged.significance;
             best.hits = judged.hits;
-            best.links.clear();
-            const double limit = judged.wide * judged.wide * (1 + 1e-9);
-            for (std::size_t i = 0; i < linked.next.size(); ++i)
-                if (linked.next[i] >= 0 && linked.square[i] <= limit)
-                    best.links.emplace_back(static_cast<int>(i), linked.next[i]);
+            best.links = links_within(linked, judged.wide);
         }
         // What chance alone would do is not worth another look.
         if (judged.significance > worst + 4 || linked.next == last) break;
         last = linked.next;
-        const RigidMap better = refit(type, linked, judged.wide, map);
+        const RigidMap better = refit(type, links_within(linked, judged.wide), map);
         if ((better.linear - map.linear).norm() * cloud_.radius() + (better.shift - map.shift).norm() <
             1e-3 * cloud_.scene().resolution)
             break;
         map = better;
     }
     if (best.significance > worst) return std::nullopt;
+    best.map = refit(type, best.links, best.map);
     return best;
 }
 

@@ -46,7 +46,9 @@ private:
     void link(SymmetryType type, const RigidMap& map, double reach, const Eigen::Vector3d* center,
               double radius, Linked& out) const;
     Judged judge(SymmetryType type, const Linked& linked, double reach) const;
-    RigidMap refit(SymmetryType type, const Linked& linked, double tolerance, const RigidMap& old) const;
+    static std::vector<std::pair<int, int>> links_within(const Linked& linked, double tolerance);
+    RigidMap refit(SymmetryType type, const std::vector<std::pair<int, int>>& pairs,
+                   const RigidMap& old) const;
     std::optional<Support> settle(SymmetryType type, RigidMap map, double reach, double worst) const;
     void grow(const Hypothesis& hypothesis, double reach, RigidMap& map) const;
     bool promising(const Hypothesis& hypothesis, double reach) const;

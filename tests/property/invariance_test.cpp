@@ -36,6 +36,7 @@ namespace {
 
 DetectOptions noisy_options() {
     DetectOptions options;
+    options.method = Method::paper;
     options.max_tolerance = 5e-3;
     return options;
 }
@@ -192,6 +193,7 @@ std::set<CanonicalCycle> cycles_of_label(const PointSet& all, int label, const D
     if (part.size() < 3) return {};
     const double unit = diameter(part.positions);
     DetectOptions options;
+    options.method = Method::paper;
     options.resolution = whole.resolution / unit;
     options.max_tolerance = std::min(1.0, whole.max_tolerance / unit);
     const DetectResult result = detect(part, options);

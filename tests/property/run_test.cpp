@@ -38,6 +38,7 @@ PointSet long_set() {
 
 DetectOptions wide_options() {
     DetectOptions options;
+    options.method = Method::paper;
     options.max_tolerance = 0.05;
     return options;
 }
@@ -163,6 +164,7 @@ TEST(Progress, rises_within_each_stage_and_comes_one_call_at_a_time) {
     RunContext context = recorder.context(4, 0ms);
     PointSet points = noisy_set(3, 8, 40, 2e-4, 5);
     DetectOptions options;
+    options.method = Method::paper;
     options.max_tolerance = 5e-3;
     const DetectResult result = detect(points, options, context);
     EXPECT_EQ(result.status, RunStatus::complete);

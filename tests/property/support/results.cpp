@@ -20,6 +20,7 @@ PointSet point_set(const std::vector<Point>& points, int dimension) {
 
 DetectOptions exact_options() {
     DetectOptions options;
+    options.method = Method::paper;
     options.max_tolerance = 1e-4;
     return options;
 }
