@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "hypotheses/generators.hpp"
@@ -330,6 +331,44 @@ Hypothesis hypothesis_of(const Cloud& cloud, const Candidate& candidate) {
     return h;
 }
 
+namespace {
+
+/// How many points of its label are as far from the centre as each point; 0 near the centre. O(n log n).
+std::vector<std::size_t> shell_sizes(const Cloud& cloud, const Vector3d& center, double reach) {
+    std::map<int, std::vector<double>> radii;
+    const auto radius = [&](int i) { return (cloud[i] - center).norm(); };
+    for (int i = 0; i < cloud.size(); ++i) radii[cloud.label(i)].push_back(radius(i));
+    for (auto& [label, sorted] : radii) std::sort(sorted.begin(), sorted.end());
+    std::vector<std::size_t> sizes(static_cast<std::size_t>(cloud.size()), 0);
+    for (int i = 0; i < cloud.size(); ++i) {
+        if (radius(i) <= 2 * reach) continue;
+        const std::vector<double>& sorted = radii[cloud.label(i)];
+        sizes[static_cast<std::size_t>(i)] =
+            static_cast<std::size_t>(std::upper_bound(sorted.begin(), sorted.end(), radius(i) + reach) -
+                                     std::lower_bound(sorted.begin(), sorted.end(), radius(i) - reach));
+    }
+    return sizes;
+}
+
+/// Of points on one line: its mirror, and the inversion, in the middle.
+std::vector<Hypothesis> turned_round(const Cloud& cloud, const Vector3d& center, const Vector3d& along,
+                                     double reach) {
+    Hypothesis h;
+    h.type = SymmetryType::mirror;
+    h.map.linear = Matrix3d::Identity() - 2 * along * along.transpose() / along.squaredNorm();
+    h.map.shift = center - h.map.linear * center;
+    h.off = reach;
+    std::vector<Hypothesis> out{h};
+    h.type = cloud.dimension() == 2 ? SymmetryType::half_turn : SymmetryType::inversion;
+    h.map.linear = -Matrix3d::Identity();
+    if (cloud.dimension() == 2) h.map.linear(2, 2) = 1;
+    h.map.shift = center - h.map.linear * center;
+    out.push_back(h);
+    return out;
+}
+
+}  // namespace
+
 std::vector<Hypothesis> frames(const Cloud& cloud, const Vector3d& center, double reach, std::size_t most) {
     const int n = cloud.size();
     const auto radius = [&](int i) { return (cloud[i] - center).norm(); };
@@ -343,10 +382,9 @@ std::vector<Hypothesis> frames(const Cloud& cloud, const Vector3d& center, doubl
     // The point whose shell is smallest, and the second, across from it, likewise.
     int first = -1, second = -1;
     std::size_t least = 0;
-    std::vector<std::vector<int>> shells;
-    for (int i = 0; i < n; ++i) shells.push_back(radius(i) > 2 * reach ? shell(i) : std::vector<int>());
+    const std::vector<std::size_t> sizes = shell_sizes(cloud, center, reach);
     for (int i = 0; i < n; ++i) {
-        const std::size_t size = shells[static_cast<std::size_t>(i)].size();
+        const std::size_t size = sizes[static_cast<std::size_t>(i)];
         if (size > 0 && (first < 0 || size < least)) {
             first = i;
             least = size;
@@ -356,7 +394,7 @@ std::vector<Hypothesis> frames(const Cloud& cloud, const Vector3d& center, doubl
     const Vector3d p = cloud[first] - center;
     double best = 0;
     for (int i = 0; i < n; ++i) {
-        const std::size_t size = shells[static_cast<std::size_t>(i)].size();
+        const std::size_t size = sizes[static_cast<std::size_t>(i)];
         if (size == 0) continue;
         const double sine = (cloud[i] - center).normalized().cross(p.normalized()).norm();
         if (sine / static_cast<double>(size) > best) {
@@ -364,11 +402,12 @@ std::vector<Hypothesis> frames(const Cloud& cloud, const Vector3d& center, doubl
             second = i;
         }
     }
-    if (second < 0 || best * static_cast<double>(n) < 0.05) return {};
+    if (second < 0 || best * static_cast<double>(n) < 0.05) return turned_round(cloud, center, p, reach);
     std::vector<Hypothesis> out;
     const double apart = (cloud[first] - cloud[second]).norm();
-    for (const int f : shells[static_cast<std::size_t>(first)])
-        for (const int s : shells[static_cast<std::size_t>(second)]) {
+    const std::vector<int> firsts = shell(first), seconds = shell(second);
+    for (const int f : firsts)
+        for (const int s : seconds) {
             if (f == s || std::abs((cloud[f] - cloud[s]).norm() - apart) > 2 * reach) continue;
             for (const bool improper : {false, true}) {
                 Hypothesis h;

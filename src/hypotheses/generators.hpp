@@ -31,8 +31,8 @@ struct Candidate {
     std::array<int, 4> points{{-1, -1, -1, -1}};
 };
 
-/// Half-turns from two pairs A, A' and B, B' with |AB| = |A'B'| and |AB'| = |A'B|. The `most` that agree best,
-/// best first.
+/// Half-turns from two pairs A, A' and B, B' with |AB| = |A'B'| and |AB'| = |A'B|. The `most` that agree
+/// best, best first.
 std::vector<Candidate> half_turns(const Cloud& cloud, const SearchGroup& group, double reach,
                                   std::size_t most);
 

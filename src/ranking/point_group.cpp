@@ -95,8 +95,14 @@ GroupName cubic(const Census& c) {
 
 GroupName uniaxial(const Census& c) {
     const int n = c.axes.front().order;
-    const Vector3d axis = c.axes.front().direction;
+    Vector3d axis = c.axes.front().direction;
     const auto across = [&](const Vector3d& v) { return std::abs(v.dot(axis)) < 2 * kSameMap; };
+    // Of several axes of order two, the main one is that in which the mirrors cross (D2d).
+    for (const Census::Axis& a : c.axes) {
+        if (a.order != n || std::all_of(c.mirrors.begin(), c.mirrors.end(), across)) break;
+        axis = a.direction;
+    }
+    if (!std::all_of(c.mirrors.begin(), c.mirrors.end(), across)) axis = c.axes.front().direction;
     const bool dihedral =
         std::any_of(c.axes.begin() + 1, c.axes.end(), [&](const auto& a) { return across(a.direction); });
     const bool flat = std::any_of(c.mirrors.begin(), c.mirrors.end(), [&](const Vector3d& v) {
@@ -183,7 +189,12 @@ public:
         group.center = to_point(middle_);
         group.schoenflies = "C1";
         group.hermann_mauguin = "1";
-        if (candidates_.empty()) return group;
+        if (candidates_.empty()) {
+            // A line and a plane have symmetries that move no point.
+            grow(true);
+            name(group);
+            return group;
+        }
         // With slots for the full group, or for those alone that need none.
         for (const bool complete : {false, true}) {
             grow(complete);
@@ -232,8 +243,15 @@ private:
                 s.type == SymmetryType::glide_reflection)
                 continue;
             // A tolerance of the size of the gaps between points says nothing about their places.
-            if (s.coverage < 0.5 || s.deviation.max > 0.2 * gap_ || s.significance > 1) continue;
+            if (s.deviation.max > 0.2 * gap_) continue;
             Candidate c{k, map_of(s, middle_), std::max({1.5 * s.deviation.max, 2 * scene_.resolution}), {}};
+            // Points of no orbit that stay nearly in place: noise moves them, too.
+            constexpr double kShareOfGap = 0.08;
+            for (int i = 0; i < scene_.size(); ++i) {
+                const Vector3d& p = places_[static_cast<std::size_t>(i)];
+                const double off = (c.map(p) - p).norm();
+                if (off <= kShareOfGap * gap_) c.slack = std::max(c.slack, off);
+            }
             for (const bool back : {false, true})
                 for (int i = 0; i < scene_.size(); ++i) {
                     const Vector3d& p = places_[static_cast<std::size_t>(i)];
@@ -244,6 +262,21 @@ private:
                 }
             if (c.holes.size() <= 2 * most_slots()) candidates_.push_back(std::move(c));
         }
+        drop_looser();
+    }
+
+    /// What holds much more loosely than the others is no element of their group: a box that is nearly a
+    /// cube.
+    void drop_looser() {
+        constexpr double kJump = 8;
+        std::vector<double> slacks;
+        for (const Candidate& c : candidates_) slacks.push_back(c.slack);
+        std::sort(slacks.begin(), slacks.end());
+        for (std::size_t k = 1; k < slacks.size(); ++k)
+            if (slacks[k] > kJump * slacks[k - 1]) {
+                std::erase_if(candidates_, [&](const Candidate& c) { return c.slack >= slacks[k]; });
+                return;
+            }
     }
 
     /// One point may always be lost; more only from many, or any set would be part of a larger one.
@@ -257,7 +290,7 @@ private:
         elements_.clear();
         members_.clear();
         slots_.clear();
-        tolerance_ = 0;
+        tolerance_ = 2 * scene_.resolution;
         for (const Candidate& c : candidates_) {
             if (complete && !c.holes.empty()) continue;
             const double tolerance = std::max(tolerance_, c.slack);
@@ -276,7 +309,7 @@ private:
             add_element(c.map.linear);
             add_element(c.map.linear.transpose());
         }
-        if (scene_.dimension() == 3 && extent_[0] <= tolerance_) {
+        if (scene_.dimension() == 3 && extent_[0] <= flatness()) {
             // The plane of a flat set is a mirror that moves no point.
             const std::vector<Matrix3d> flat = elements_;
             const Matrix3d mirror = Matrix3d::Identity() - 2 * axes_.col(0) * axes_.col(0).transpose();
@@ -286,9 +319,18 @@ private:
         close();
     }
 
+    /// Points of a noisy plane or line lie so far off it.
+    double flatness() const {
+        constexpr double kShareOfGap = 0.03;
+        const bool exact = !candidates_.empty() && tolerance_ <= 4 * scene_.resolution;
+        return exact ? tolerance_ : std::max(tolerance_, kShareOfGap * gap_);
+    }
+
+    /// Noise moves the maps of a small set by so much that their products do not quite close.
     void add_element(const Matrix3d& m) {
+        const double same = std::clamp(6 * tolerance_ / radius_, 2 * kSameMap, 6 * kSameMap);
         for (const Matrix3d& e : elements_)
-            if ((e - m).norm() < 2 * kSameMap) return;
+            if ((e - m).norm() < same) return;
         elements_.push_back(m);
     }
 
@@ -304,7 +346,7 @@ private:
     }
 
     void name(PointGroup& group) const {
-        if (scene_.dimension() == 3 && extent_[1] <= tolerance_) {
+        if (scene_.dimension() == 3 && extent_[1] <= flatness()) {
             // All on one line: turns about it by any angle.
             const bool swaps = std::any_of(elements_.begin(), elements_.end(), [&](const Matrix3d& m) {
                 return (m * axes_.col(2)).dot(axes_.col(2)) < 0;

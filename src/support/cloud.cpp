@@ -1,6 +1,7 @@
 #include "support/cloud.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace insym {
 namespace {
@@ -26,6 +27,16 @@ Cloud::Cloud(const PointScene& scene) : scene_(scene), middle_(mean_of(scene)), 
         points_.push_back(to_vector(scene.position(i)) - middle_);
         radius_ = std::max(radius_, points_.back().norm());
     }
+}
+
+double Cloud::nearest_gap() const {
+    double best = 4 * radius_ * radius_;
+    for (int i = 0; i < size(); ++i)
+        grid_.visit_ball(to_point((*this)[i]), std::sqrt(best), [&](int j, double square) {
+            if (j != i) best = std::min(best, square);
+            return true;
+        });
+    return std::sqrt(best);
 }
 
 int Cloud::nearest(const Eigen::Vector3d& place, int label, double reach, double& square) const {

@@ -24,6 +24,9 @@ public:
     const PointScene& scene() const { return scene_; }
     const PointGrid& grid() const { return grid_; }
 
+    /// The least distance between two points.
+    double nearest_gap() const;
+
     /// The nearest point to `place` with this label within `reach`, or -1; `square` is its distance squared.
     int nearest(const Eigen::Vector3d& place, int label, double reach, double& square) const;
 

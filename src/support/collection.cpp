@@ -44,36 +44,38 @@ bool Collection::explains(const Hypothesis& h) const {
 int Collection::same(const Support& support) const {
     constexpr double kShare = 0.8;
     const auto size = static_cast<double>(support.links.size());
-    std::vector<int> seen;
-    // Some links in common is enough to find it.
-    const std::size_t step = std::max<std::size_t>(1, support.links.size() / 8);
-    for (std::size_t k = 0; k < support.links.size(); k += step) {
-        const auto found = by_link_.find(key(support.links[k].first, support.links[k].second));
-        if (found != by_link_.end()) seen.insert(seen.end(), found->second.begin(), found->second.end());
+    // How many of the links each support shares, in either direction.
+    std::vector<int> shared(supports_.size(), 0), met;
+    for (const auto& [from, to] : support.links) {
+        const auto found = by_link_.find(key(from, to));
+        if (found == by_link_.end()) continue;
+        for (const int id : found->second)
+            if (shared[static_cast<std::size_t>(id)]++ == 0) met.push_back(id);
     }
-    std::sort(seen.begin(), seen.end());
-    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-    for (const int id : seen) {
+    int first = -1;
+    for (const int id : met) {
+        if (first >= 0 && id > first) continue;
+        const int count = shared[static_cast<std::size_t>(id)];
         const Support& other = supports_[static_cast<std::size_t>(id)];
         // The links of one, or nearly so, among those of the other of the same kind: a part of it.
         const auto larger = std::max(size, static_cast<double>(other.links.size()));
         const double smaller = std::min(size, static_cast<double>(other.links.size()));
         const double needed = kShare * (other.type == support.type ? smaller : larger);
-        if (smaller < needed) continue;
+        if (smaller < needed || count < needed) continue;
         int forward = 0, backward = 0;
         for (const auto& [from, to] : support.links) {
             forward += has_link(other, from, to) ? 1 : 0;
             backward += has_link(other, to, from) ? 1 : 0;
         }
-        if (std::max(forward, backward) >= needed) return id;
+        if (std::max(forward, backward) >= needed) first = id;
     }
-    return -1;
+    return first;
 }
 
 void Collection::enter(int id) {
     for (const auto& [from, to] : supports_[static_cast<std::size_t>(id)].links) {
         std::vector<int>& ids = by_link_[key(from, to)];
-        if (ids.empty() || ids.back() != id) ids.push_back(id);
+        if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
     }
 }
 

@@ -235,8 +235,7 @@ private:
             if (!types.contains(supports[k].type)) return;
             Pattern p = trace(cloud_, significance_, supports[k]);
             if (p.runs.empty()) return;
-            const bool whole = covered(supports[k]) == cloud_.size();
-            if (p.significance > kListed && !whole) return;
+            if (p.significance > kListed && !gatherer_.whole(supports[k])) return;
             keep[k] = 1;
             Symmetry& s = out[k];
             s.type = p.support.type;

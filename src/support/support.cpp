@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace insym {
@@ -128,6 +129,20 @@ Gatherer::Gatherer(const Cloud& cloud, const Significance& significance, double 
     for (double level = cloud.scene().resolution; level < reach * (1 - 1e-9); level *= std::numbers::sqrt2)
         levels_.push_back(level);
     levels_.push_back(std::max(reach, cloud.scene().resolution));
+    gap_ = cloud.nearest_gap();
+}
+
+bool Gatherer::whole(const Support& support) const {
+    constexpr double kShareOfGap = 0.08;
+    const double reach = std::max(kShareOfGap * gap_, cloud_.scene().resolution);
+    if (support.tolerance > reach) return false;
+    std::vector<char> in(static_cast<std::size_t>(cloud_.size()), 0);
+    for (const auto& [from, to] : support.links)
+        in[static_cast<std::size_t>(from)] = in[static_cast<std::size_t>(to)] = 1;
+    for (int i = 0; i < cloud_.size(); ++i)
+        if (in[static_cast<std::size_t>(i)] == 0 && (support.map(cloud_[i]) - cloud_[i]).norm() > reach)
+            return false;
+    return true;
 }
 
 void Gatherer::link(SymmetryType type, const RigidMap& map, double reach, const Vector3d* center,
@@ -292,6 +307,8 @@ std::optional<Support> Gatherer::settle(SymmetryType type, RigidMap map, double 
     Linked linked;
     std::vector<int> last;
     Support best;
+    best.type = type;
+    best.map = map;
     best.significance = 1e9;
     for (int round = 0; round < kRounds; ++round) {
         link(type, map, reach, nullptr, 0, linked);
@@ -323,12 +340,14 @@ std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double wor
     constexpr double kLever = 12;
     const double near = std::clamp(kLever * hypothesis.off, 8 * cloud_.scene().resolution, reach());
     if (!promising(hypothesis, near)) return std::nullopt;
+    const bool central = hypothesis.from[0] < 0;
+    const double kept = central ? std::numeric_limits<double>::infinity() : worst;
     RigidMap map = hypothesis.map;
     grow(hypothesis, near, map);
-    std::optional<Support> best = settle(hypothesis.type, map, near, worst + 3);
+    std::optional<Support> best = settle(hypothesis.type, map, near, kept + 3);
     if (!best) return std::nullopt;
     if (near < reach()) {
-        const auto wider = settle(best->type, best->map, reach(), worst + 3);
+        const auto wider = settle(best->type, best->map, reach(), kept + 3);
         if (wider && wider->significance < best->significance) best = wider;
     }
     Vector3d center = Vector3d::Zero();
@@ -336,12 +355,19 @@ std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double wor
         center += cloud_[from] / static_cast<double>(best->links.size());
     double radius = 0;
     for (const auto& [from, to] : best->links) radius = std::max(radius, (cloud_[from] - center).norm());
+    double slack = 4 * best->tolerance;
+    if (best->links.empty()) {
+        // A pair of points that change places links nothing but as a half-turn, a mirror or an inversion.
+        radius = cloud_.radius();
+        slack = hypothesis.off;
+    }
     for (const auto& [type, plain] :
-         simpler_kinds(best->type, best->map, center, radius, 4 * best->tolerance, cloud_.dimension())) {
-        const auto other = settle(type, plain, reach(), worst);
+         simpler_kinds(best->type, best->map, center, radius, slack, cloud_.dimension())) {
+        const auto other = settle(type, plain, reach(), kept);
         if (other && worth(*other, cloud_.dimension()) <= worth(*best, cloud_.dimension())) best = other;
     }
-    if (best->significance > worst) return std::nullopt;
+    if (best->links.empty()) return std::nullopt;
+    if (best->significance > worst && !(central && whole(*best))) return std::nullopt;
     return best;
 }
 

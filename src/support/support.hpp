@@ -34,8 +34,12 @@ public:
 
     /// Grows the support of a hypothesis outward from its points, refits it, takes the tolerance at which it
     /// is most significant and the simplest kind that explains as much. Nothing where that stays above
-    /// `worst`.
+    /// `worst`, but for symmetries of the whole set where the hypothesis rests on its centre: of a few points
+    /// these are no surer than chance, and wanted all the same.
     std::optional<Support> gather(const Hypothesis& hypothesis, double worst) const;
+
+    /// All points are carried or stay in place, and no point is off by as much as could be another place.
+    bool whole(const Support& support) const;
 
     const std::vector<double>& levels() const { return levels_; }
     double reach() const { return levels_.back(); }
@@ -56,6 +60,7 @@ private:
     const Cloud& cloud_;
     const Significance& significance_;
     std::vector<double> levels_;
+    double gap_ = 0;  // between the two nearest points
 };
 
 /// The kinds that `map` is within `slack` of, over a ball of `radius` about `center`; the map as that kind.

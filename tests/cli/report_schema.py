@@ -26,7 +26,7 @@ def check_indices(value, n):
 
 def check_tolerance(value):
     check_keys(value, ["min", "max"])
-    assert is_number(value["min"]) and (value["max"] is None or value["max"] > value["min"]), value
+    assert is_number(value["min"]) and (value["max"] is None or value["max"] >= value["min"]), value
 
 
 def check_isometry(value, dimension):
@@ -97,7 +97,10 @@ def check_report(report):
         check_symmetry(symmetry, n, dimension)
     ids = [s["id"] for s in report["symmetries"]]
     assert len(set(ids)) == len(ids) and all(set(s["implied_by"]) <= set(ids) for s in report["symmetries"])
-    assert report["group"] is None
+    assert (report["group"] is None) == (report["options"]["method"] == "paper")
+    if report["group"] is not None:
+        check_keys(report["group"], ["schoenflies", "hermann_mauguin", "center", "empty_slots"])
+        check_vector(report["group"]["center"], dimension)
     check_keys(report["stats"], ["seeds", "cycles", "symmetries"])
     check_keys(report["timing"], ["load_s", "cycles_s", "symmetries_s", "detect_s"])
     assert all(value >= 0 for value in report["timing"].values())

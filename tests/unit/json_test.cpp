@@ -71,7 +71,7 @@ TEST(Json, ValuesComeBack) {
     EXPECT_EQ(report["input"], Json::parse(R"({"path": "dir/a.step", "format": "step", "unit": "mm",
         "dimension": 3, "diameter": 2.0, "merged_points": 3})"));
     EXPECT_EQ(report["options"],
-              Json::parse(R"({"method": "paper", "types": ["M", "I", "C2", "C", "T", "Z", "S", "W"],
+              Json::parse(R"({"method": "robust", "types": ["M", "I", "C2", "C", "T", "Z", "S", "W"],
         "resolution": 2e-6, "max_tolerance": 0.1, "points": "vertices"})"));
     EXPECT_EQ(report["points"], Json::parse("[[1.0,0.0,0.5],[0.0,1.0,0.5],[-1.0,0.0,0.5],[0.0,-1.0,0.5]]"));
     EXPECT_EQ(report["cycles"], Json::parse(R"([{"points": [0,1,2,3], "closed": true, "types": ["C", "S"],

@@ -23,7 +23,7 @@ const ReportContext kContext = {"a.xyz", "xyz", "mm", "points", 0};
 
 std::string table_of(const DetectResult& result, int limit = 0, const ReportContext& context = kContext) {
     std::ostringstream out;
-    write_table(out, result, context, limit);
+    write_table(out, result, context, limit, /*all=*/true);
     return out.str();
 }
 
