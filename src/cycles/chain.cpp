@@ -15,7 +15,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 void Chain::assign(std::span<const int> points) {
     constexpr std::size_t kRoom = 64;  // free places at each end before the buffer has to move
     buffer_.resize(points.size() + 2 * kRoom);
-    begin_ = kRoom;
+    origin_ = begin_ = kRoom;
     end_ = kRoom + points.size();
     std::copy(points.begin(), points.end(), buffer_.begin() + kRoom);
     orbits_.assign(points.size() - 1, Span{});
@@ -30,6 +30,7 @@ void Chain::add(int point, End end) {
         std::vector<int> wider(3 * room);
         std::copy(buffer_.begin(), buffer_.end(), wider.begin() + static_cast<std::ptrdiff_t>(room));
         buffer_.swap(wider);
+        origin_ += room;
         begin_ += room;
         end_ += room;
     }
@@ -42,6 +43,20 @@ void Chain::add(int point, End end) {
         buffer_[end_++] = point;
     else
         buffer_[--begin_] = point;
+}
+
+Chain::Saved Chain::saved() const {
+    Saved saved;
+    saved.begin = static_cast<std::ptrdiff_t>(begin_) - static_cast<std::ptrdiff_t>(origin_);
+    saved.size = end_ - begin_;
+    std::copy(orbits_.begin(), orbits_.end(), saved.orbits.begin());
+    return saved;
+}
+
+void Chain::restore(const Saved& saved) {
+    begin_ = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(origin_) + saved.begin);
+    end_ = begin_ + saved.size;
+    orbits_.assign(saved.orbits.begin(), saved.orbits.begin() + (end_ - begin_ - 1));
 }
 
 // --- short sequences -----------------------------------------------------------------------------
@@ -89,8 +104,7 @@ ToleranceInterval short_interval(const Distances& distances, std::span<const int
 
 /// E_min of a chain of kPoints points with one more at the distances `d`; `points` from that end inwards.
 template <std::size_t kPoints>
-double extended_tolerance(const Span* orbits, const double* d, const int* points, double floor,
-                          double limit) {
+double tolerance_with(const Span* orbits, const double* d, const int* points, double floor, double limit) {
     Span spans[kPoints];
 #pragma GCC unroll 8
     for (std::size_t k = 0; k < kPoints; ++k) {
@@ -141,69 +155,104 @@ double ChainOracle::closed_tolerance(const Chain& chain) {
     return tolerance_interval(spans_, scene_.resolution, scene_.max_tolerance).min;
 }
 
-bool ChainOracle::holds(std::span<const int> points, bool closed) {
+double ChainOracle::tolerance(std::span<const int> points, bool closed) {
     for (const int p : points)
-        if (scene_.label(p) != scene_.label(points.front())) return false;
-    return interval(points, closed).min <= scene_.max_tolerance;
+        if (scene_.label(p) != scene_.label(points.front())) return kInfinity;
+    const double tolerance = interval(points, closed).min;
+    return tolerance <= scene_.max_tolerance ? tolerance : kInfinity;
 }
 
 // --- candidates ----------------------------------------------------------------------------------
 
-/// Calls visit(q, E_min of the chain with q at `end`) for the points q that keep all orbits within `limit`,
-/// which visit may lower.
-template <class Visit>
-void ChainOracle::visit_extensions(const Chain& chain, End end, double& limit, Visit visit) {
-    const auto among =
+/// The points that the last three at `end` leave to ask, which for longer chains are also noted in inwards_.
+std::span<const Candidate> ChainOracle::list_for(const Chain& chain, End end) {
+    const auto list =
         fourths_.of(chain.from(end, 2), chain.from(end, 1), chain.from(end, 0), fourths_scratch_);
-    if (among.empty()) return;
-    const auto orbits = chain.orbits();
-    const auto c = static_cast<std::size_t>(chain.size());
-    inwards_.resize(c);
+    if (list.empty()) return list;
+    inwards_.resize(static_cast<std::size_t>(chain.size()));
     for (int k = 0; k < chain.size(); ++k) inwards_[static_cast<std::size_t>(k)] = chain.from(end, k);
-    const auto tolerance_with = [&](int q) {
-        const double* d = scene_.distances.row(q).data();
-        const double floor = scene_.resolution;
-        switch (c) {
-            case 4:
-                return extended_tolerance<4>(orbits.data(), d, inwards_.data(), floor, limit);
-            case 5:
-                return extended_tolerance<5>(orbits.data(), d, inwards_.data(), floor, limit);
-            case 6:
-                return extended_tolerance<6>(orbits.data(), d, inwards_.data(), floor, limit);
-            default:
-                break;
-        }
-        spans_.assign(orbits.begin(), orbits.end());
-        spans_.emplace_back();
-        for (std::size_t k = 0; k < c; ++k) {
-            spans_[k].include(d[inwards_[k]]);
-            if (spans_[k].spread() > limit) return kInfinity;
-        }
-        return tolerance_interval(spans_, floor, limit).min;
-    };
-    // A part of a chain is never worse than the whole: no later one of the list can be better.
-    for (const Candidate& q : among) {
-        if (q.tolerance > limit) break;
-        // The list knows of the last three.
-        if (c > 3 && chain.contains(q.point, end, 3)) continue;
-        const double tolerance = c > 3 ? tolerance_with(q.point) : q.tolerance;
-        if (tolerance <= limit) visit(q.point, tolerance);
+    return list;
+}
+
+/// E_min of the chain with q of the list at `end`; infinite above `limit` and if q is in the chain.
+double ChainOracle::extended_tolerance(const Chain& chain, const Candidate& q, double limit) {
+    const std::size_t c = inwards_.size();
+    // The list knows of the last three.
+    if (c == 3) return q.tolerance;
+    bool inside = false;
+    for (std::size_t k = 3; k < c; ++k) inside |= inwards_[k] == q.point;
+    if (inside) return kInfinity;
+    const auto orbits = chain.orbits();
+    const double* d = scene_.distances.row(q.point).data();
+    const double floor = scene_.resolution;
+    switch (c) {
+        case 4:
+            return tolerance_with<4>(orbits.data(), d, inwards_.data(), floor, limit);
+        case 5:
+            return tolerance_with<5>(orbits.data(), d, inwards_.data(), floor, limit);
+        case 6:
+            return tolerance_with<6>(orbits.data(), d, inwards_.data(), floor, limit);
+        default:
+            break;
     }
+    spans_.assign(orbits.begin(), orbits.end());
+    spans_.emplace_back();
+    for (std::size_t k = 0; k < c; ++k) {
+        spans_[k].include(d[inwards_[k]]);
+        if (spans_[k].spread() > limit) return kInfinity;
+    }
+    return tolerance_interval(spans_, floor, limit).min;
 }
 
 void ChainOracle::candidates(const Chain& chain, End end, std::vector<Candidate>& out) {
     out.clear();
-    double limit = scene_.max_tolerance;
-    visit_extensions(chain, end, limit, [&](int q, double tolerance) { out.push_back({tolerance, q}); });
+    for (const Candidate& q : list_for(chain, end)) {
+        const double tolerance = extended_tolerance(chain, q, scene_.max_tolerance);
+        if (tolerance <= scene_.max_tolerance) out.push_back({tolerance, q.point});
+    }
     std::sort(out.begin(), out.end());
 }
 
-Candidate ChainOracle::best_candidate(const Chain& chain, End end, double limit) {
-    Candidate best{kInfinity, -1};
-    visit_extensions(chain, end, limit, [&](int q, double tolerance) {
-        best = std::min(best, Candidate{tolerance, q});
-        limit = best.tolerance;
-    });
+namespace {
+
+/// Can q come before `best`, given E_min of the chain that both extend and that of its last three with q? A
+/// part of a chain is never worse than the whole.
+bool may_be_better(const Candidate& q, const Candidate& best, double least) {
+    return Candidate{std::max(q.tolerance, least), q.point} < best;
+}
+
+}  // namespace
+
+Candidate ChainOracle::best_candidate(const Chain& chain, End end, double least, double limit) {
+    Candidate best{limit, std::numeric_limits<int>::max()};
+    for (const Candidate& q : list_for(chain, end)) {
+        if (q.tolerance > best.tolerance) break;
+        if (!may_be_better(q, best, least)) continue;
+        best = std::min(best, Candidate{extended_tolerance(chain, q, best.tolerance), q.point});
+    }
+    return best.point == std::numeric_limits<int>::max() ? kNobody : best;
+}
+
+ChainOracle::Sides ChainOracle::best_on_sides(const Chain& chain, End end, double least) {
+    const auto from_third = [&](int i) {
+        const Point& a = scene_.position(chain.from(end, 2));
+        const Point& p = scene_.position(i);
+        return Point{p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+    };
+    const Point u = from_third(chain.from(end, 1)), v = from_third(chain.from(end, 0));
+    const Point normal = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    const auto side = [&](int q) {
+        const Point w = from_third(q);
+        const double volume = normal[0] * w[0] + normal[1] * w[1] + normal[2] * w[2];
+        return scene_.dimension() == 2 || volume == 0 ? 1 : volume > 0 ? 2 : 0;
+    };
+    Sides best = {kNobody, kNobody, kNobody};
+    for (const Candidate& q : list_for(chain, end)) {
+        Candidate& here = best[side(q.point)];
+        if (!may_be_better(q, here, least)) continue;
+        const double limit = std::min(here.tolerance, scene_.max_tolerance);
+        here = std::min(here, Candidate{extended_tolerance(chain, q, limit), q.point});
+    }
     return best;
 }
 
@@ -264,16 +313,10 @@ void ChainOracle::collect_extremes(std::span<const int> points, bool closed) {
     }
 }
 
-bool ChainOracle::unambiguous(std::span<const int> points, bool closed) {
-    double eps = 0;
-    if (points.size() <= kShortSequence) {
-        eps = short_interval_of(points, closed, kInfinity).min;
-    } else {
+bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double eps) {
+    if (points.size() > kShortSequence) {
         collect_extremes(points, closed);
         left_out_ = points.size();
-        spans_.clear();
-        for (const Extremes& e : extremes_) spans_.push_back(e.all());
-        eps = tolerance_interval(spans_, scene_.resolution).min;
     }
     // What could be replaced the last time often can again, by the same point: most chains end here.
     const auto again = std::find(points.begin(), points.end(), replaced_) - points.begin();
