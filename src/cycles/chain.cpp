@@ -18,6 +18,7 @@ void Chain::assign(std::span<const int> points) {
     origin_ = begin_ = kRoom;
     end_ = kRoom + points.size();
     std::copy(points.begin(), points.end(), buffer_.begin() + kRoom);
+    fingerprint_ = Fingerprint(points);
     orbits_.assign(points.size() - 1, Span{});
     for (std::size_t j = 1; j < points.size(); ++j)
         for (std::size_t i = 0; i < j; ++i)
@@ -34,6 +35,7 @@ void Chain::add(int point, End end) {
         begin_ += room;
         end_ += room;
     }
+    fingerprint_ = fingerprint_with(point, end);
     const auto d = scene_->distances.row(point);
     const int c = size();
     orbits_.emplace_back();
@@ -49,6 +51,7 @@ Chain::Saved Chain::saved() const {
     Saved saved;
     saved.begin = static_cast<std::ptrdiff_t>(begin_) - static_cast<std::ptrdiff_t>(origin_);
     saved.size = end_ - begin_;
+    saved.fingerprint = fingerprint_;
     std::copy(orbits_.begin(), orbits_.end(), saved.orbits.begin());
     return saved;
 }
@@ -56,6 +59,7 @@ Chain::Saved Chain::saved() const {
 void Chain::restore(const Saved& saved) {
     begin_ = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(origin_) + saved.begin);
     end_ = begin_ + saved.size;
+    fingerprint_ = saved.fingerprint;
     orbits_.assign(saved.orbits.begin(), saved.orbits.begin() + (end_ - begin_ - 1));
 }
 

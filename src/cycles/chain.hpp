@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "cycles/chain_memo.hpp"
 #include "cycles/fourths.hpp"
 #include "cycles/tolerance_interval.hpp"
 #include "scene.hpp"
@@ -29,6 +30,7 @@ public:
     struct Saved {
         std::ptrdiff_t begin = 0;  // from the origin
         std::size_t size = 0;
+        Fingerprint fingerprint;
         std::array<Span, kLongestSaved - 1> orbits;
     };
     Saved saved() const;
@@ -43,6 +45,11 @@ public:
     }
     /// Orbit r - 1 holds the distances |P_l P_{l+r}|.
     std::span<const Span> orbits() const { return orbits_; }
+    const Fingerprint& fingerprint() const { return fingerprint_; }
+    /// That of the chain with one more point.
+    Fingerprint fingerprint_with(int point, End end) const {
+        return fingerprint_.with_link(from(end, 0), point);
+    }
 
 private:
     const Scene* scene_;
@@ -51,6 +58,7 @@ private:
     std::size_t begin_ = 0;
     std::size_t end_ = 0;
     std::vector<Span> orbits_;
+    Fingerprint fingerprint_;
 };
 
 /// Answers the questions of sections 2 to 4 about chains and cycles. Holds scratch memory: one for

@@ -102,7 +102,10 @@ private:
     /// The number of a chain in the memo, or none if it is too short for that.
     static constexpr ChainMemo::Id kNone = ~ChainMemo::Id{0};
     ChainMemo::Id remembered(std::span<const int> chain) {
-        return chain.size() < kShortestRemembered ? kNone : memo_.id(chain);
+        return chain.size() < kShortestRemembered ? kNone : memo_.id(Fingerprint(chain));
+    }
+    ChainMemo::Id remembered(const Chain& chain) {
+        return chain.points().size() < kShortestRemembered ? kNone : memo_.id(chain.fingerprint());
     }
 
     /// A chain on the way from a start, and the end at which the next point was added.
@@ -193,6 +196,9 @@ bool Expansion::expand_four(std::span<const int> four, double tolerance) {
     const Chain::Saved here = chain_.saved();
     const ChainOracle::Sides lefts = oracle_.best_on_sides(chain_, End::left, tolerance);
     const ChainOracle::Sides rights = oracle_.best_on_sides(chain_, End::right, tolerance);
+    for (const End end : {End::right, End::left})
+        for (const Candidate& fifth : end == End::left ? lefts : rights)
+            if (fifth.point >= 0) memo_.prefetch(chain_.fingerprint_with(fifth.point, end));
     four_alone_.reset();
     bool found = follow_path(tolerance, Ends{*std::min_element(lefts.begin(), lefts.end()),
                                              *std::min_element(rights.begin(), rights.end())});
@@ -215,7 +221,7 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
     const std::size_t first_step = path_.size();
     bool found = false;
     while (true) {
-        const ChainMemo::Id id = remembered(chain_.points());
+        const ChainMemo::Id id = remembered(chain_);
         if (const auto known = id != kNone ? memo_[id].path : Answer::unknown; known != Answer::unknown) {
             found = known == Answer::yes;
             break;
@@ -267,6 +273,8 @@ End Expansion::better_end(const Candidate& left, const Candidate& right) const {
 /// Where both ends are equally good, a chain and its reverse part ways, and both are followed: true if there
 /// is a cycle on both.
 bool Expansion::follow_both(const Candidate& left, const Candidate& right) {
+    memo_.prefetch(chain_.fingerprint_with(right.point, End::right));
+    memo_.prefetch(chain_.fingerprint_with(left.point, End::left));
     const Chain::Saved here = chain_.saved();
     chain_.add(right.point, End::right);
     const bool found = follow_path(right.tolerance);
@@ -321,11 +329,9 @@ bool Expansion::become_cycle(std::span<const int> chain, double tolerance) {
 
 /// A ring is met from each of its points and in both directions; asked once.
 bool Expansion::resolve_closed(std::span<const int> ring, double tolerance) {
-    const CanonicalCycle cycle = canonical(ring, true);
-    const ChainMemo::Id id = rings_.id(cycle.points);
+    const ChainMemo::Id id = rings_.id(Fingerprint(ring, true));
     if (rings_[id].alone == Answer::unknown)
-        rings_[id].alone =
-            answer(oracle_.unambiguous(cycle.points, true, tolerance) && keep(cycle.points, true, tolerance));
+        rings_[id].alone = answer(oracle_.unambiguous(ring, true, tolerance) && keep(ring, true, tolerance));
     return rings_[id].alone == Answer::yes;
 }
 
