@@ -71,9 +71,19 @@ namespace {
 /// length.
 constexpr std::size_t kShortSequence = 7;
 
+/// The points of a sequence, but for q in the place `at`, if that is one.
+struct Replaced {
+    std::size_t at;
+    int q;
+};
+
 template <std::size_t kPoints, bool kClosed>
-ToleranceInterval interval_of(const Distances& distances, const int* points, double floor, double limit) {
+ToleranceInterval interval_of(const Distances& distances, const int* sequence, Replaced replaced,
+                              double floor, double limit) {
     constexpr std::size_t kOrbits = kClosed ? kPoints / 2 : kPoints - 1;
+    int points[kPoints];
+#pragma GCC unroll 8
+    for (std::size_t i = 0; i < kPoints; ++i) points[i] = i == replaced.at ? replaced.q : sequence[i];
     Span spans[kOrbits];
 #pragma GCC unroll 8
     for (std::size_t i = 0; i < kPoints; ++i) {
@@ -88,21 +98,21 @@ ToleranceInterval interval_of(const Distances& distances, const int* points, dou
 }
 
 template <bool kClosed>
-ToleranceInterval short_interval(const Distances& distances, std::span<const int> points, double floor,
-                                 double limit) {
+ToleranceInterval short_interval(const Distances& distances, std::span<const int> points, Replaced replaced,
+                                 double floor, double limit) {
     switch (points.size()) {
         case 2:
-            return interval_of<2, kClosed>(distances, points.data(), floor, limit);
+            return interval_of<2, kClosed>(distances, points.data(), replaced, floor, limit);
         case 3:
-            return interval_of<3, kClosed>(distances, points.data(), floor, limit);
+            return interval_of<3, kClosed>(distances, points.data(), replaced, floor, limit);
         case 4:
-            return interval_of<4, kClosed>(distances, points.data(), floor, limit);
+            return interval_of<4, kClosed>(distances, points.data(), replaced, floor, limit);
         case 5:
-            return interval_of<5, kClosed>(distances, points.data(), floor, limit);
+            return interval_of<5, kClosed>(distances, points.data(), replaced, floor, limit);
         case 6:
-            return interval_of<6, kClosed>(distances, points.data(), floor, limit);
+            return interval_of<6, kClosed>(distances, points.data(), replaced, floor, limit);
         default:
-            return interval_of<kShortSequence, kClosed>(distances, points.data(), floor, limit);
+            return interval_of<kShortSequence, kClosed>(distances, points.data(), replaced, floor, limit);
     }
 }
 
@@ -122,17 +132,18 @@ double tolerance_with(const Span* orbits, const double* d, const int* points, do
 
 }  // namespace
 
-ToleranceInterval ChainOracle::short_interval_of(std::span<const int> points, bool closed,
-                                                 double limit) const {
-    return closed ? short_interval<true>(scene_.distances, points, scene_.resolution, limit)
-                  : short_interval<false>(scene_.distances, points, scene_.resolution, limit);
+/// Of `points`, with q in the place `at` unless that is beyond the last.
+ToleranceInterval ChainOracle::short_interval_with(std::span<const int> points, bool closed, std::size_t at,
+                                                   int q, double limit) const {
+    return closed ? short_interval<true>(scene_.distances, points, {at, q}, scene_.resolution, limit)
+                  : short_interval<false>(scene_.distances, points, {at, q}, scene_.resolution, limit);
 }
 
 // --- tolerance -----------------------------------------------------------------------------------
 
 ToleranceInterval ChainOracle::interval(std::span<const int> points, bool closed) {
     const std::size_t c = points.size();
-    if (c <= kShortSequence) return short_interval_of(points, closed, kInfinity);
+    if (c <= kShortSequence) return short_interval_with(points, closed, c, -1, kInfinity);
     const std::size_t orbits = closed ? c / 2 : c - 1;
     spans_.assign(orbits, Span{});
     for (std::size_t i = 0; i < c; ++i) {
@@ -322,14 +333,20 @@ bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double e
         collect_extremes(points, closed);
         left_out_ = points.size();
     }
+    const std::size_t c = points.size();
+    const auto place_of = [&](int p) {
+        std::size_t place = c;
+        for (std::size_t k = 0; k < c; ++k) place = points[k] == p ? k : place;
+        return place;
+    };
     // What could be replaced the last time often can again, by the same point: most chains end here.
-    const auto again = std::find(points.begin(), points.end(), replaced_) - points.begin();
-    const auto last = static_cast<std::size_t>(again);
-    if (last < points.size() && scene_.label(replaced_by_) == scene_.label(replaced_) &&
-        (fits_in_place(points, closed, last, replaced_by_, eps) || replaceable(points, closed, last, eps)))
+    const std::size_t last = place_of(replaced_);
+    if (last < c && scene_.label(replaced_by_) == scene_.label(replaced_) &&
+        fits_in_place(points, closed, last, replaced_by_, eps))
         return false;
-    for (std::size_t at = 0; at < points.size(); ++at)
-        if (at != last && replaceable(points, closed, at, eps)) return false;
+    // From the ends inwards: there the distances say least.
+    for (std::size_t k = 0; k < c; ++k)
+        if (replaceable(points, closed, k % 2 == 0 ? k / 2 : c - 1 - k / 2, eps)) return false;
     return true;
 }
 
@@ -380,7 +397,9 @@ bool ChainOracle::fits_in_place(std::span<const int> points, bool closed, std::s
     const std::size_t neighbour = at + 1 < points.size() ? at + 1 : at - 1;
     const double usual = scene_.distances(points[at], points[neighbour]);
     if (std::abs(d[static_cast<std::size_t>(points[neighbour])] - usual) > 2 * eps) return false;
-    if (std::find(points.begin(), points.end(), q) != points.end()) return false;
+    bool inside = false;
+    for (const int p : points) inside |= p == q;
+    if (inside) return false;
     const ToleranceInterval other = points.size() <= kShortSequence
                                         ? short_interval_with(points, closed, at, q, eps)
                                         : long_interval_with(points, closed, at, q, eps);
@@ -388,14 +407,6 @@ bool ChainOracle::fits_in_place(std::span<const int> points, bool closed, std::s
     replaced_ = points[at];
     replaced_by_ = q;
     return true;
-}
-
-ToleranceInterval ChainOracle::short_interval_with(std::span<const int> points, bool closed, std::size_t at,
-                                                   int q, double limit) const {
-    int other[kShortSequence];
-    std::copy(points.begin(), points.end(), other);
-    other[at] = q;
-    return short_interval_of({other, points.size()}, closed, limit);
 }
 
 /// Sets rest_.

@@ -97,7 +97,6 @@ private:
     bool replaceable(std::span<const int> points, bool closed, std::size_t at, double eps);
     bool replaceable_from_shell(std::span<const int> points, bool closed, std::size_t at, double eps);
     bool fits_in_place(std::span<const int> points, bool closed, std::size_t at, int q, double eps);
-    ToleranceInterval short_interval_of(std::span<const int> points, bool closed, double limit) const;
     ToleranceInterval short_interval_with(std::span<const int> points, bool closed, std::size_t at, int q,
                                           double limit) const;
     void leave_out(std::size_t c, bool closed, std::size_t at);
