@@ -87,9 +87,9 @@ private:
     bool resolve_open(std::span<const int> chain, double tolerance);
     bool resolve_open(std::span<const int> chain, double tolerance, ChainMemo::Id id);
     bool become_cycle(std::span<const int> chain, double tolerance);
-    bool resolve_closed(std::span<const int> ring, double tolerance);
+    bool resolve_closed(std::span<const int> ring, const Fingerprint& fingerprint, double tolerance);
     bool keep(std::span<const int> sequence, bool closed, double tolerance);
-    bool extend(std::vector<int>& sequence, double& tolerance);
+    bool extend(double& tolerance);
 
     /// Ends tie at every step of an exact row; beyond this length it makes no difference which is first.
     static constexpr int kLongestBranching = Chain::kLongestSaved;
@@ -128,8 +128,15 @@ private:
     std::optional<bool> four_alone_;  // does the chain of four at hand become a cycle?
     Fourths::List list_;
     Fourths::List fours_;  // the fourth points of a seed
+    // Of C3: the chain, what it can take at either end, and with one of these:
+    struct Extension {
+        Candidate candidate;
+        End end;
+    };
     Chain extended_;
-    std::vector<Candidate> extensions_;
+    std::vector<Candidate> candidates_;
+    std::vector<Extension> extensions_;
+    std::vector<int> longer_;
     std::vector<ChainMemo::Id> passed_;
     std::size_t seeds_ = 0;
     std::vector<std::pair<CanonicalCycle, TypeSet>> found_;
@@ -184,7 +191,7 @@ void Expansion::resolve_seeds(int apex) {
         // An equilateral triangle closes at once; it is met from all three apexes.
         if (apex < a)
             if (const double closed = oracle_.tolerance(seed, true); closed <= scene_.max_tolerance)
-                resolve_closed(seed, closed);
+                resolve_closed(seed, Fingerprint(seed, true), closed);
         if (failed_.contains(a, apex, c) || failed_.contains(c, apex, a)) resolve_open(seed, tolerance);
     });
 }
@@ -230,6 +237,8 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
             path_.resize(first_step);
             return true;
         }
+        const Fingerprint ring = chain_.fingerprint_with(chain_.from(End::left, 0), End::right);
+        rings_.prefetch(ring);
         const double closed = oracle_.closed_tolerance(chain_);
         // No longer chain is better than this one.
         if (closed <= tolerance) ends = Ends{ChainOracle::kNobody, ChainOracle::kNobody};
@@ -241,7 +250,8 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
         const bool ends_here = closes || best > scene_.max_tolerance;
         const bool parts = right.tolerance == left.tolerance && chain_.size() <= kLongestBranching;
         if (ends_here || parts) {
-            found = ends_here ? closes && resolve_closed(chain_.points(), closed) : follow_both(left, right);
+            found = ends_here ? closes && resolve_closed(chain_.points(), ring, closed)
+                              : follow_both(left, right);
             found = found || resolve_open(chain_.points(), tolerance, id);
             if (id != kNone) memo_[id].path = answer(found);
             break;
@@ -313,23 +323,24 @@ bool Expansion::resolve_open(std::span<const int> chain, double tolerance, Chain
 /// C3 by extension, then the types. True if a cycle came out. Each longer chain met on the way
 /// would come to the same end, so one answer serves them all: passed_.
 bool Expansion::become_cycle(std::span<const int> chain, double tolerance) {
-    std::vector<int> s(chain.begin(), chain.end());
-    if (s.front() > s.back()) std::reverse(s.begin(), s.end());
-    while (extend(s, tolerance)) {
-        const double closed = oracle_.tolerance(s, true);
-        if (closed <= scene_.max_tolerance && oracle_.unambiguous(s, true, closed))
-            return keep(s, true, closed);
-        const ChainMemo::Id id = remembered(s);
+    longer_.assign(chain.begin(), chain.end());
+    if (longer_.front() > longer_.back()) std::reverse(longer_.begin(), longer_.end());
+    extended_.assign(longer_);
+    while (extend(tolerance)) {
+        const double closed = oracle_.closed_tolerance(extended_);
+        if (closed <= scene_.max_tolerance && oracle_.unambiguous(extended_.points(), true, closed))
+            return keep(extended_.points(), true, closed);
+        const ChainMemo::Id id = remembered(extended_);
         if (id == kNone) continue;
         if (const auto known = memo_[id].alone; known != Answer::unknown) return known == Answer::yes;
         passed_.push_back(id);
     }
-    return keep(s, false, tolerance);
+    return keep(extended_.points(), false, tolerance);
 }
 
 /// A ring is met from each of its points and in both directions; asked once.
-bool Expansion::resolve_closed(std::span<const int> ring, double tolerance) {
-    const ChainMemo::Id id = rings_.id(Fingerprint(ring, true));
+bool Expansion::resolve_closed(std::span<const int> ring, const Fingerprint& fingerprint, double tolerance) {
+    const ChainMemo::Id id = rings_.id(fingerprint);
     if (rings_[id].alone == Answer::unknown)
         rings_[id].alone = answer(oracle_.unambiguous(ring, true, tolerance) && keep(ring, true, tolerance));
     return rings_[id].alone == Answer::yes;
@@ -344,25 +355,29 @@ bool Expansion::keep(std::span<const int> sequence, bool closed, double toleranc
     return true;
 }
 
-/// C3: takes the point of least E_min at either end that keeps C1 and C2; ties by the sequence.
-bool Expansion::extend(std::vector<int>& sequence, double& tolerance) {
-    extended_.assign(sequence);
-    std::vector<std::pair<double, std::vector<int>>> longer;
+/// C3: extended_ takes the point of least E_min at either end that keeps C1 and C2; ties by the longer
+/// sequence.
+bool Expansion::extend(double& tolerance) {
+    const auto points = extended_.points();
+    extensions_.clear();
     for (const End end : {End::left, End::right}) {
-        oracle_.candidates(extended_, end, extensions_);
-        for (const Candidate& candidate : extensions_) {
-            std::vector<int> s = sequence;
-            s.insert(end == End::left ? s.begin() : s.end(), candidate.point);
-            longer.emplace_back(candidate.tolerance, std::move(s));
-        }
+        oracle_.candidates(extended_, end, candidates_);
+        for (const Candidate& candidate : candidates_) extensions_.push_back({candidate, end});
     }
-    std::sort(longer.begin(), longer.end());
-    for (auto& [tolerance_of_longer, s] : longer)
-        if (oracle_.unambiguous(s, false, tolerance_of_longer)) {
-            sequence = std::move(s);
-            tolerance = tolerance_of_longer;
-            return true;
-        }
+    std::sort(extensions_.begin(), extensions_.end(), [&](const Extension& x, const Extension& y) {
+        if (x.candidate.tolerance != y.candidate.tolerance)
+            return x.candidate.tolerance < y.candidate.tolerance;
+        if (x.end == y.end) return x.candidate.point < y.candidate.point;
+        return x.end == End::left ? x.candidate.point < points.front() : points.front() < y.candidate.point;
+    });
+    for (const auto& [candidate, end] : extensions_) {
+        longer_.assign(points.begin(), points.end());
+        longer_.insert(end == End::left ? longer_.begin() : longer_.end(), candidate.point);
+        if (!oracle_.unambiguous(longer_, false, candidate.tolerance)) continue;
+        extended_.add(candidate.point, end);
+        tolerance = candidate.tolerance;
+        return true;
+    }
     return false;
 }
 
