@@ -15,9 +15,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 void Chain::assign(std::span<const int> points) {
     constexpr std::size_t kRoom = 64;  // free places at each end before the buffer has to move
     buffer_.resize(points.size() + 2 * kRoom);
-    begin_ = kRoom;
+    origin_ = begin_ = kRoom;
     end_ = kRoom + points.size();
     std::copy(points.begin(), points.end(), buffer_.begin() + kRoom);
+    fingerprint_ = Fingerprint(points);
     orbits_.assign(points.size() - 1, Span{});
     for (std::size_t j = 1; j < points.size(); ++j)
         for (std::size_t i = 0; i < j; ++i)
@@ -30,9 +31,11 @@ void Chain::add(int point, End end) {
         std::vector<int> wider(3 * room);
         std::copy(buffer_.begin(), buffer_.end(), wider.begin() + static_cast<std::ptrdiff_t>(room));
         buffer_.swap(wider);
+        origin_ += room;
         begin_ += room;
         end_ += room;
     }
+    fingerprint_ = fingerprint_with(point, end);
     const auto d = scene_->distances.row(point);
     const int c = size();
     orbits_.emplace_back();
@@ -44,6 +47,22 @@ void Chain::add(int point, End end) {
         buffer_[--begin_] = point;
 }
 
+Chain::Saved Chain::saved() const {
+    Saved saved;
+    saved.begin = static_cast<std::ptrdiff_t>(begin_) - static_cast<std::ptrdiff_t>(origin_);
+    saved.size = end_ - begin_;
+    saved.fingerprint = fingerprint_;
+    std::copy(orbits_.begin(), orbits_.end(), saved.orbits.begin());
+    return saved;
+}
+
+void Chain::restore(const Saved& saved) {
+    begin_ = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(origin_) + saved.begin);
+    end_ = begin_ + saved.size;
+    fingerprint_ = saved.fingerprint;
+    orbits_.assign(saved.orbits.begin(), saved.orbits.begin() + (end_ - begin_ - 1));
+}
+
 // --- short sequences -----------------------------------------------------------------------------
 
 namespace {
@@ -52,9 +71,19 @@ namespace {
 /// length.
 constexpr std::size_t kShortSequence = 7;
 
+/// The points of a sequence, but for q in the place `at`, if that is one.
+struct Replaced {
+    std::size_t at;
+    int q;
+};
+
 template <std::size_t kPoints, bool kClosed>
-ToleranceInterval interval_of(const Distances& distances, const int* points, double floor, double limit) {
+ToleranceInterval interval_of(const Distances& distances, const int* sequence, Replaced replaced,
+                              double floor, double limit) {
     constexpr std::size_t kOrbits = kClosed ? kPoints / 2 : kPoints - 1;
+    int points[kPoints];
+#pragma GCC unroll 8
+    for (std::size_t i = 0; i < kPoints; ++i) points[i] = i == replaced.at ? replaced.q : sequence[i];
     Span spans[kOrbits];
 #pragma GCC unroll 8
     for (std::size_t i = 0; i < kPoints; ++i) {
@@ -69,28 +98,27 @@ ToleranceInterval interval_of(const Distances& distances, const int* points, dou
 }
 
 template <bool kClosed>
-ToleranceInterval short_interval(const Distances& distances, std::span<const int> points, double floor,
-                                 double limit) {
+ToleranceInterval short_interval(const Distances& distances, std::span<const int> points, Replaced replaced,
+                                 double floor, double limit) {
     switch (points.size()) {
         case 2:
-            return interval_of<2, kClosed>(distances, points.data(), floor, limit);
+            return interval_of<2, kClosed>(distances, points.data(), replaced, floor, limit);
         case 3:
-            return interval_of<3, kClosed>(distances, points.data(), floor, limit);
+            return interval_of<3, kClosed>(distances, points.data(), replaced, floor, limit);
         case 4:
-            return interval_of<4, kClosed>(distances, points.data(), floor, limit);
+            return interval_of<4, kClosed>(distances, points.data(), replaced, floor, limit);
         case 5:
-            return interval_of<5, kClosed>(distances, points.data(), floor, limit);
+            return interval_of<5, kClosed>(distances, points.data(), replaced, floor, limit);
         case 6:
-            return interval_of<6, kClosed>(distances, points.data(), floor, limit);
+            return interval_of<6, kClosed>(distances, points.data(), replaced, floor, limit);
         default:
-            return interval_of<kShortSequence, kClosed>(distances, points.data(), floor, limit);
+            return interval_of<kShortSequence, kClosed>(distances, points.data(), replaced, floor, limit);
     }
 }
 
 /// E_min of a chain of kPoints points with one more at the distances `d`; `points` from that end inwards.
 template <std::size_t kPoints>
-double extended_tolerance(const Span* orbits, const double* d, const int* points, double floor,
-                          double limit) {
+double tolerance_with(const Span* orbits, const double* d, const int* points, double floor, double limit) {
     Span spans[kPoints];
 #pragma GCC unroll 8
     for (std::size_t k = 0; k < kPoints; ++k) {
@@ -104,17 +132,18 @@ double extended_tolerance(const Span* orbits, const double* d, const int* points
 
 }  // namespace
 
-ToleranceInterval ChainOracle::short_interval_of(std::span<const int> points, bool closed,
-                                                 double limit) const {
-    return closed ? short_interval<true>(scene_.distances, points, scene_.resolution, limit)
-                  : short_interval<false>(scene_.distances, points, scene_.resolution, limit);
+/// Of `points`, with q in the place `at` unless that is beyond the last.
+ToleranceInterval ChainOracle::short_interval_with(std::span<const int> points, bool closed, std::size_t at,
+                                                   int q, double limit) const {
+    return closed ? short_interval<true>(scene_.distances, points, {at, q}, scene_.resolution, limit)
+                  : short_interval<false>(scene_.distances, points, {at, q}, scene_.resolution, limit);
 }
 
 // --- tolerance -----------------------------------------------------------------------------------
 
 ToleranceInterval ChainOracle::interval(std::span<const int> points, bool closed) {
     const std::size_t c = points.size();
-    if (c <= kShortSequence) return short_interval_of(points, closed, kInfinity);
+    if (c <= kShortSequence) return short_interval_with(points, closed, c, -1, kInfinity);
     const std::size_t orbits = closed ? c / 2 : c - 1;
     spans_.assign(orbits, Span{});
     for (std::size_t i = 0; i < c; ++i) {
@@ -141,69 +170,104 @@ double ChainOracle::closed_tolerance(const Chain& chain) {
     return tolerance_interval(spans_, scene_.resolution, scene_.max_tolerance).min;
 }
 
-bool ChainOracle::holds(std::span<const int> points, bool closed) {
+double ChainOracle::tolerance(std::span<const int> points, bool closed) {
     for (const int p : points)
-        if (scene_.label(p) != scene_.label(points.front())) return false;
-    return interval(points, closed).min <= scene_.max_tolerance;
+        if (scene_.label(p) != scene_.label(points.front())) return kInfinity;
+    const double tolerance = interval(points, closed).min;
+    return tolerance <= scene_.max_tolerance ? tolerance : kInfinity;
 }
 
 // --- candidates ----------------------------------------------------------------------------------
 
-/// Calls visit(q, E_min of the chain with q at `end`) for the points q that keep all orbits within `limit`,
-/// which visit may lower.
-template <class Visit>
-void ChainOracle::visit_extensions(const Chain& chain, End end, double& limit, Visit visit) {
-    const auto among =
+/// The points that the last three at `end` leave to ask, which for longer chains are also noted in inwards_.
+std::span<const Candidate> ChainOracle::list_for(const Chain& chain, End end) {
+    const auto list =
         fourths_.of(chain.from(end, 2), chain.from(end, 1), chain.from(end, 0), fourths_scratch_);
-    if (among.empty()) return;
-    const auto orbits = chain.orbits();
-    const auto c = static_cast<std::size_t>(chain.size());
-    inwards_.resize(c);
+    if (list.empty()) return list;
+    inwards_.resize(static_cast<std::size_t>(chain.size()));
     for (int k = 0; k < chain.size(); ++k) inwards_[static_cast<std::size_t>(k)] = chain.from(end, k);
-    const auto tolerance_with = [&](int q) {
-        const double* d = scene_.distances.row(q).data();
-        const double floor = scene_.resolution;
-        switch (c) {
-            case 4:
-                return extended_tolerance<4>(orbits.data(), d, inwards_.data(), floor, limit);
-            case 5:
-                return extended_tolerance<5>(orbits.data(), d, inwards_.data(), floor, limit);
-            case 6:
-                return extended_tolerance<6>(orbits.data(), d, inwards_.data(), floor, limit);
-            default:
-                break;
-        }
-        spans_.assign(orbits.begin(), orbits.end());
-        spans_.emplace_back();
-        for (std::size_t k = 0; k < c; ++k) {
-            spans_[k].include(d[inwards_[k]]);
-            if (spans_[k].spread() > limit) return kInfinity;
-        }
-        return tolerance_interval(spans_, floor, limit).min;
-    };
-    // A part of a chain is never worse than the whole: no later one of the list can be better.
-    for (const Candidate& q : among) {
-        if (q.tolerance > limit) break;
-        // The list knows of the last three.
-        if (c > 3 && chain.contains(q.point, end, 3)) continue;
-        const double tolerance = c > 3 ? tolerance_with(q.point) : q.tolerance;
-        if (tolerance <= limit) visit(q.point, tolerance);
+    return list;
+}
+
+/// E_min of the chain with q of the list at `end`; infinite above `limit` and if q is in the chain.
+double ChainOracle::extended_tolerance(const Chain& chain, const Candidate& q, double limit) {
+    const std::size_t c = inwards_.size();
+    // The list knows of the last three.
+    if (c == 3) return q.tolerance;
+    bool inside = false;
+    for (std::size_t k = 3; k < c; ++k) inside |= inwards_[k] == q.point;
+    if (inside) return kInfinity;
+    const auto orbits = chain.orbits();
+    const double* d = scene_.distances.row(q.point).data();
+    const double floor = scene_.resolution;
+    switch (c) {
+        case 4:
+            return tolerance_with<4>(orbits.data(), d, inwards_.data(), floor, limit);
+        case 5:
+            return tolerance_with<5>(orbits.data(), d, inwards_.data(), floor, limit);
+        case 6:
+            return tolerance_with<6>(orbits.data(), d, inwards_.data(), floor, limit);
+        default:
+            break;
     }
+    spans_.assign(orbits.begin(), orbits.end());
+    spans_.emplace_back();
+    for (std::size_t k = 0; k < c; ++k) {
+        spans_[k].include(d[inwards_[k]]);
+        if (spans_[k].spread() > limit) return kInfinity;
+    }
+    return tolerance_interval(spans_, floor, limit).min;
 }
 
 void ChainOracle::candidates(const Chain& chain, End end, std::vector<Candidate>& out) {
     out.clear();
-    double limit = scene_.max_tolerance;
-    visit_extensions(chain, end, limit, [&](int q, double tolerance) { out.push_back({tolerance, q}); });
+    for (const Candidate& q : list_for(chain, end)) {
+        const double tolerance = extended_tolerance(chain, q, scene_.max_tolerance);
+        if (tolerance <= scene_.max_tolerance) out.push_back({tolerance, q.point});
+    }
     std::sort(out.begin(), out.end());
 }
 
-Candidate ChainOracle::best_candidate(const Chain& chain, End end, double limit) {
-    Candidate best{kInfinity, -1};
-    visit_extensions(chain, end, limit, [&](int q, double tolerance) {
-        best = std::min(best, Candidate{tolerance, q});
-        limit = best.tolerance;
-    });
+namespace {
+
+/// Can q come before `best`, given E_min of the chain that both extend and that of its last three with q? A
+/// part of a chain is never worse than the whole.
+bool may_be_better(const Candidate& q, const Candidate& best, double least) {
+    return Candidate{std::max(q.tolerance, least), q.point} < best;
+}
+
+}  // namespace
+
+Candidate ChainOracle::best_candidate(const Chain& chain, End end, double least, double limit) {
+    Candidate best{limit, std::numeric_limits<int>::max()};
+    for (const Candidate& q : list_for(chain, end)) {
+        if (q.tolerance > best.tolerance) break;
+        if (!may_be_better(q, best, least)) continue;
+        best = std::min(best, Candidate{extended_tolerance(chain, q, best.tolerance), q.point});
+    }
+    return best.point == std::numeric_limits<int>::max() ? kNobody : best;
+}
+
+ChainOracle::Sides ChainOracle::best_on_sides(const Chain& chain, End end, double least) {
+    const auto from_third = [&](int i) {
+        const Point& a = scene_.position(chain.from(end, 2));
+        const Point& p = scene_.position(i);
+        return Point{p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+    };
+    const Point u = from_third(chain.from(end, 1)), v = from_third(chain.from(end, 0));
+    const Point normal = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    const auto side = [&](int q) {
+        const Point w = from_third(q);
+        const double volume = normal[0] * w[0] + normal[1] * w[1] + normal[2] * w[2];
+        return scene_.dimension() == 2 || volume == 0 ? 1 : volume > 0 ? 2 : 0;
+    };
+    Sides best = {kNobody, kNobody, kNobody};
+    for (const Candidate& q : list_for(chain, end)) {
+        Candidate& here = best[side(q.point)];
+        if (!may_be_better(q, here, least)) continue;
+        const double limit = std::min(here.tolerance, scene_.max_tolerance);
+        here = std::min(here, Candidate{extended_tolerance(chain, q, limit), q.point});
+    }
     return best;
 }
 
@@ -264,25 +328,25 @@ void ChainOracle::collect_extremes(std::span<const int> points, bool closed) {
     }
 }
 
-bool ChainOracle::unambiguous(std::span<const int> points, bool closed) {
-    double eps = 0;
-    if (points.size() <= kShortSequence) {
-        eps = short_interval_of(points, closed, kInfinity).min;
-    } else {
+bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double eps) {
+    if (points.size() > kShortSequence) {
         collect_extremes(points, closed);
         left_out_ = points.size();
-        spans_.clear();
-        for (const Extremes& e : extremes_) spans_.push_back(e.all());
-        eps = tolerance_interval(spans_, scene_.resolution).min;
     }
+    const std::size_t c = points.size();
+    const auto place_of = [&](int p) {
+        std::size_t place = c;
+        for (std::size_t k = 0; k < c; ++k) place = points[k] == p ? k : place;
+        return place;
+    };
     // What could be replaced the last time often can again, by the same point: most chains end here.
-    const auto again = std::find(points.begin(), points.end(), replaced_) - points.begin();
-    const auto last = static_cast<std::size_t>(again);
-    if (last < points.size() && scene_.label(replaced_by_) == scene_.label(replaced_) &&
-        (fits_in_place(points, closed, last, replaced_by_, eps) || replaceable(points, closed, last, eps)))
+    const std::size_t last = place_of(replaced_);
+    if (last < c && scene_.label(replaced_by_) == scene_.label(replaced_) &&
+        fits_in_place(points, closed, last, replaced_by_, eps))
         return false;
-    for (std::size_t at = 0; at < points.size(); ++at)
-        if (at != last && replaceable(points, closed, at, eps)) return false;
+    // From the ends inwards: there the distances say least.
+    for (std::size_t k = 0; k < c; ++k)
+        if (replaceable(points, closed, k % 2 == 0 ? k / 2 : c - 1 - k / 2, eps)) return false;
     return true;
 }
 
@@ -333,7 +397,9 @@ bool ChainOracle::fits_in_place(std::span<const int> points, bool closed, std::s
     const std::size_t neighbour = at + 1 < points.size() ? at + 1 : at - 1;
     const double usual = scene_.distances(points[at], points[neighbour]);
     if (std::abs(d[static_cast<std::size_t>(points[neighbour])] - usual) > 2 * eps) return false;
-    if (std::find(points.begin(), points.end(), q) != points.end()) return false;
+    bool inside = false;
+    for (const int p : points) inside |= p == q;
+    if (inside) return false;
     const ToleranceInterval other = points.size() <= kShortSequence
                                         ? short_interval_with(points, closed, at, q, eps)
                                         : long_interval_with(points, closed, at, q, eps);
@@ -341,14 +407,6 @@ bool ChainOracle::fits_in_place(std::span<const int> points, bool closed, std::s
     replaced_ = points[at];
     replaced_by_ = q;
     return true;
-}
-
-ToleranceInterval ChainOracle::short_interval_with(std::span<const int> points, bool closed, std::size_t at,
-                                                   int q, double limit) const {
-    int other[kShortSequence];
-    std::copy(points.begin(), points.end(), other);
-    other[at] = q;
-    return short_interval_of({other, points.size()}, closed, limit);
 }
 
 /// Sets rest_.

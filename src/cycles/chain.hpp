@@ -1,9 +1,13 @@
 // A growing chain of points with its distance orbits (definitions, sections 2 and 4).
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "cycles/chain_memo.hpp"
 #include "cycles/fourths.hpp"
 #include "cycles/tolerance_interval.hpp"
 #include "scene.hpp"
@@ -12,7 +16,7 @@ namespace insym {
 
 enum class End { left, right };
 
-/// An open chain P_1 ... P_c that grows at either end and shrinks again. Its orbits are kept up to
+/// An open chain P_1 ... P_c that grows at either end and goes back to what it was. Its orbits are kept up to
 /// date: adding a point costs O(c).
 class Chain {
 public:
@@ -20,6 +24,17 @@ public:
 
     void assign(std::span<const int> points);
     void add(int point, End end);
+
+    static constexpr int kLongestSaved = 8;
+    /// A chain of at most kLongestSaved points, to come back to from the longer ones that it grew to.
+    struct Saved {
+        std::ptrdiff_t begin = 0;  // from the origin
+        std::size_t size = 0;
+        Fingerprint fingerprint;
+        std::array<Span, kLongestSaved - 1> orbits;
+    };
+    Saved saved() const;
+    void restore(const Saved& saved);
 
     int size() const { return static_cast<int>(end_ - begin_); }
     std::span<const int> points() const { return {buffer_.data() + begin_, end_ - begin_}; }
@@ -30,19 +45,20 @@ public:
     }
     /// Orbit r - 1 holds the distances |P_l P_{l+r}|.
     std::span<const Span> orbits() const { return orbits_; }
-    /// Is it among the points but for the first `skip` from `end`?
-    bool contains(int point, End end, int skip) const {
-        for (int k = skip; k < size(); ++k)
-            if (from(end, k) == point) return true;
-        return false;
+    const Fingerprint& fingerprint() const { return fingerprint_; }
+    /// That of the chain with one more point.
+    Fingerprint fingerprint_with(int point, End end) const {
+        return fingerprint_.with_link(from(end, 0), point);
     }
 
 private:
     const Scene* scene_;
     std::vector<int> buffer_;
+    std::size_t origin_ = 0;  // where the chain began when it was assigned
     std::size_t begin_ = 0;
     std::size_t end_ = 0;
     std::vector<Span> orbits_;
+    Fingerprint fingerprint_;
 };
 
 /// Answers the questions of sections 2 to 4 about chains and cycles. Holds scratch memory: one for
@@ -57,25 +73,30 @@ public:
     ToleranceInterval interval(std::span<const int> points, bool closed);
     /// E_min of the chain closed to a cycle, infinite above max_tolerance. O(c log c).
     double closed_tolerance(const Chain& chain);
-    /// C1 of a sequence: one label, and E_min <= max_tolerance.
-    bool holds(std::span<const int> points, bool closed);
-    /// C2: no outside point can replace a point of the sequence with E_min still valid.
-    bool unambiguous(std::span<const int> points, bool closed);
+    /// E_min of a sequence with C1 (one label, and E_min <= max_tolerance), infinite without.
+    double tolerance(std::span<const int> points, bool closed);
+    /// C2: no outside point can replace a point of the sequence with its E_min, `eps`, still valid.
+    bool unambiguous(std::span<const int> points, bool closed, double eps);
 
     /// Every point that extends `end` of a chain of three and more with C1 true, least E_min first, ties by
     /// index.
     void candidates(const Chain& chain, End end, std::vector<Candidate>& out);
-    /// The first of them, or tolerance = infinity and point = -1 if none is within `limit`.
-    Candidate best_candidate(const Chain& chain, End end, double limit);
+    /// The first of them, or kNobody if none is within `limit`. `least`: E_min of the chain.
+    Candidate best_candidate(const Chain& chain, End end, double least, double limit);
+    /// The first of them on each side of the plane of the three points at `end` of the chain, and in it; in
+    /// 2D all are in the plane.
+    using Sides = std::array<Candidate, 3>;
+    Sides best_on_sides(const Chain& chain, End end, double least);
+
+    static constexpr Candidate kNobody{std::numeric_limits<double>::infinity(), -1};
 
 private:
-    template <class Visit>
-    void visit_extensions(const Chain& chain, End end, double& limit, Visit visit);
+    std::span<const Candidate> list_for(const Chain& chain, End end);
+    double extended_tolerance(const Chain& chain, const Candidate& q, double limit);
     void collect_extremes(std::span<const int> points, bool closed);
     bool replaceable(std::span<const int> points, bool closed, std::size_t at, double eps);
     bool replaceable_from_shell(std::span<const int> points, bool closed, std::size_t at, double eps);
     bool fits_in_place(std::span<const int> points, bool closed, std::size_t at, int q, double eps);
-    ToleranceInterval short_interval_of(std::span<const int> points, bool closed, double limit) const;
     ToleranceInterval short_interval_with(std::span<const int> points, bool closed, std::size_t at, int q,
                                           double limit) const;
     void leave_out(std::size_t c, bool closed, std::size_t at);
@@ -93,7 +114,6 @@ private:
         Extremes();
         void include(double d, int at);
         Span without(int first, int second) const;
-        Span all() const { return {low[0], high[0]}; }
     };
 
     const Scene& scene_;

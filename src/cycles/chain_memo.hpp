@@ -1,6 +1,7 @@
 // Remembers what is known of each chain of points that the expansion has passed.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -8,9 +9,45 @@
 
 namespace insym {
 
-/// A hash map from sequences of ints, each the same as its reverse, to what is known of them. A sequence is
-/// known by a fingerprint of 96 bits, not kept itself: two of a hundred million chains share one with a
-/// probability below 1e-12. So a chain of any length costs 16 to 32 bytes and mostly one access to memory.
+/// What a chain or a ring is known by: a sum over its links, which determine it, so its reverse has the same
+/// and one link more or less costs O(1). Of 96 bits: two of a hundred million chains share one with a
+/// probability below 1e-12.
+class Fingerprint {
+public:
+    Fingerprint() = default;
+    /// Of all points from the first to the last, and of a ring back to the first.
+    explicit Fingerprint(std::span<const int> points, bool closed = false) {
+        for (std::size_t i = 1; i < points.size(); ++i) add_link(points[i - 1], points[i]);
+        if (closed) add_link(points.back(), points.front());
+    }
+
+    void add_link(int a, int b) {
+        const auto [first, second] = std::minmax(a, b);
+        std::uint64_t mixed = static_cast<std::uint64_t>(first) << 32 | static_cast<std::uint32_t>(second);
+        mixed = (mixed + 0x243F6A8885A308D3ULL) * 0x9E3779B97F4A7C15ULL;
+        mixed = (mixed ^ mixed >> 32) * 0xD6E8FEB86659FD93ULL;
+        mixed ^= mixed >> 32;
+        low_ += mixed;
+        // Another shift, lest the sums of both depend on one another.
+        high_ += static_cast<std::uint32_t>((mixed ^ mixed >> 29) * 0xBF58476D1CE4E5B9ULL >> 32);
+    }
+    Fingerprint with_link(int a, int b) const {
+        Fingerprint longer = *this;
+        longer.add_link(a, b);
+        return longer;
+    }
+
+    std::uint64_t low() const { return low_; }
+    std::uint32_t high() const { return high_; }
+
+private:
+    std::uint64_t low_ = 0;
+    std::uint32_t high_ = 0;
+};
+
+/// A hash map from chains, or rings, to what is known of them. They are known by their fingerprints, not kept
+/// themselves. So one of any length costs 16 to 32 bytes and mostly one access to memory, which may be
+/// asked for ahead of its use.
 class ChainMemo {
 public:
     enum class Answer : std::uint8_t { unknown, no, yes };
@@ -22,21 +59,26 @@ public:
 
     ChainMemo() : slots_(kInitialSlots) {}
 
-    /// The number of `chain`, which is not empty; stays valid.
-    Id id(std::span<const int> chain) {
+    void prefetch(const Fingerprint& chain) const {
+#if defined(__GNUC__)
+        __builtin_prefetch(&slots_[chain.low() & (slots_.size() - 1)], 1);
+#endif
+    }
+
+    /// The number of `chain`; stays valid.
+    Id id(const Fingerprint& chain) {
         if (3 * (entries_.size() + 1) > 2 * slots_.size()) grow();
-        const Slot wanted = chain.front() <= chain.back() ? fingerprint(chain.begin(), chain.end())
-                                                          : fingerprint(chain.rbegin(), chain.rend());
-        std::size_t s = wanted.low & (slots_.size() - 1);
+        std::size_t s = chain.low() & (slots_.size() - 1);
         for (; slots_[s].entry != kFree; s = (s + 1) & (slots_.size() - 1))
-            if (slots_[s].low == wanted.low && slots_[s].high == wanted.high) return slots_[s].entry;
-        slots_[s] = wanted;
-        slots_[s].entry = static_cast<Id>(entries_.size());
+            if (slots_[s].low == chain.low() && slots_[s].high == chain.high()) return slots_[s].entry;
+        slots_[s] = {chain.low(), chain.high(), static_cast<Id>(entries_.size())};
         entries_.emplace_back();
         return slots_[s].entry;
     }
 
-    Known& operator[](Id id) { return entries_[id]; }
+    Known& operator[](Id id) {
+        return entries_[id];
+    }
 
 private:
     static constexpr Id kFree = ~Id{0};
@@ -47,19 +89,6 @@ private:
         std::uint32_t high = 0;
         Id entry = kFree;
     };
-
-    template <class Iterator>
-    static Slot fingerprint(Iterator point, Iterator end) {
-        std::uint64_t low = 0x243F6A8885A308D3ULL, high = 0x13198A2E03707344ULL;
-        for (; point != end; ++point) {
-            const auto p = static_cast<std::uint64_t>(*point) + 1;
-            low = (low ^ p) * 0x9E3779B97F4A7C15ULL;
-            low ^= low >> 32;
-            high = (high + p) * 0xD6E8FEB86659FD93ULL;
-            high ^= high >> 29;
-        }
-        return {low, static_cast<std::uint32_t>(high >> 32), kFree};
-    }
 
     void grow() {
         std::vector<Slot> old(2 * slots_.size());

@@ -78,24 +78,21 @@ public:
 private:
     template <class Visit>
     void visit_seeds(int apex, Visit visit);
-    bool expand_four(std::span<const int> four);
-    bool expand_side(std::span<const int> four, const std::vector<Candidate>& fifths);
+    bool expand_four(std::span<const int> four, double tolerance);
     using Ends = std::pair<Candidate, Candidate>;  // the best candidates at the left and at the right end
-    bool follow(std::span<const int> start);
-    bool follow_path(std::optional<Ends> ends = {});
-    Ends best_ends(double limit);
+    bool follow_path(double tolerance, std::optional<Ends> ends = {});
+    Ends best_ends(double least, double limit);
     End better_end(const Candidate& left, const Candidate& right) const;
-    bool follow_both(int left, int right);
-    bool resolve_open(std::span<const int> chain);
-    bool resolve_open(std::span<const int> chain, ChainMemo::Id id);
-    bool become_cycle(std::span<const int> chain);
-    bool resolve_closed(std::span<const int> ring);
-    bool keep(std::span<const int> sequence, bool closed);
-    bool extend(std::vector<int>& sequence);
-    int side(std::span<const int> chain, int point) const;
+    bool follow_both(const Candidate& left, const Candidate& right);
+    bool resolve_open(std::span<const int> chain, double tolerance);
+    bool resolve_open(std::span<const int> chain, double tolerance, ChainMemo::Id id);
+    bool become_cycle(std::span<const int> chain, double tolerance);
+    bool resolve_closed(std::span<const int> ring, const Fingerprint& fingerprint, double tolerance);
+    bool keep(std::span<const int> sequence, bool closed, double tolerance);
+    bool extend(double& tolerance);
 
     /// Ends tie at every step of an exact row; beyond this length it makes no difference which is first.
-    static constexpr int kLongestBranching = 8;
+    static constexpr int kLongestBranching = Chain::kLongestSaved;
     /// Shorter chains are met once only.
     static constexpr std::size_t kShortestRemembered = 5;
 
@@ -105,13 +102,17 @@ private:
     /// The number of a chain in the memo, or none if it is too short for that.
     static constexpr ChainMemo::Id kNone = ~ChainMemo::Id{0};
     ChainMemo::Id remembered(std::span<const int> chain) {
-        return chain.size() < kShortestRemembered ? kNone : memo_.id(chain);
+        return chain.size() < kShortestRemembered ? kNone : memo_.id(Fingerprint(chain));
+    }
+    ChainMemo::Id remembered(const Chain& chain) {
+        return chain.points().size() < kShortestRemembered ? kNone : memo_.id(chain.fingerprint());
     }
 
     /// A chain on the way from a start, and the end at which the next point was added.
     struct Step {
         ChainMemo::Id id;
         End added_at;
+        double tolerance;  // E_min of the chain
     };
 
     const Scene& scene_;
@@ -126,17 +127,23 @@ private:
     std::vector<Step> path_;          // from the start to chain_
     std::optional<bool> four_alone_;  // does the chain of four at hand become a cycle?
     Fourths::List list_;
-    std::vector<int> fours_;  // the fourth points of a seed
-    std::vector<Candidate> left_fifths_, right_fifths_;
+    Fourths::List fours_;  // the fourth points of a seed
+    // Of C3: the chain, what it can take at either end, and with one of these:
+    struct Extension {
+        Candidate candidate;
+        End end;
+    };
     Chain extended_;
-    std::vector<Candidate> extensions_;
+    std::vector<Candidate> candidates_;
+    std::vector<Extension> extensions_;
+    std::vector<int> longer_;
     std::vector<ChainMemo::Id> passed_;
     std::size_t seeds_ = 0;
     std::vector<std::pair<CanonicalCycle, TypeSet>> found_;
 };
 
-/// Calls visit(a, c) for every seed (a, apex, c) with a < c: a and c are at nearly the same distance, so each
-/// a looks only at the few that follow it in the list by distance.
+/// Calls visit(a, c, E_min) for every seed (a, apex, c) with a < c: a and c are at nearly the same distance,
+/// so each a looks only at the few that follow it in the list by distance.
 template <class Visit>
 void Expansion::visit_seeds(int apex, Visit visit) {
     const auto d = scene_.distances.row(apex);
@@ -150,7 +157,8 @@ void Expansion::visit_seeds(int apex, Visit visit) {
             if (far - near > scene_.max_tolerance) break;
             const auto [a, c] = std::minmax(others[i], others[j]);
             const int seed[] = {a, apex, c};
-            if (oracle_.holds(seed, false)) visit(a, c);
+            const double tolerance = oracle_.tolerance(seed, false);
+            if (tolerance <= scene_.max_tolerance) visit(a, c, tolerance);
         }
     }
 }
@@ -160,15 +168,15 @@ void Expansion::expand_fours(int apex) {
         const auto fourths = fourths_.of(a, apex, c, list_);
         fours_.clear();
         for (const Candidate& d : fourths)
-            if (a < d.point) fours_.push_back(d.point);
-        for (const int d : fours_) {
-            const int four[] = {a, apex, c, d};
-            if (expand_four(four)) continue;
+            if (a < d.point) fours_.push_back(d);
+        for (const Candidate& d : fours_) {
+            const int four[] = {a, apex, c, d.point};
+            if (expand_four(four, d.tolerance)) continue;
             failed_.add(a, apex, c);
-            failed_.add(d, c, apex);
+            failed_.add(d.point, c, apex);
         }
     };
-    visit_seeds(apex, [&](int a, int c) {
+    visit_seeds(apex, [&](int a, int c, double) {
         ++seeds_;
         expand(a, c);
         expand(c, a);
@@ -178,71 +186,49 @@ void Expansion::expand_fours(int apex) {
 /// A path on which nothing is unambiguous and has a type falls back to the chain of four and then to the
 /// seed.
 void Expansion::resolve_seeds(int apex) {
-    visit_seeds(apex, [&](int a, int c) {
+    visit_seeds(apex, [&](int a, int c, double tolerance) {
         const int seed[] = {a, apex, c};
         // An equilateral triangle closes at once; it is met from all three apexes.
-        if (apex < a && oracle_.holds(seed, true)) resolve_closed(seed);
-        if (failed_.contains(a, apex, c) || failed_.contains(c, apex, a)) resolve_open(seed);
+        if (apex < a)
+            if (const double closed = oracle_.tolerance(seed, true); closed <= scene_.max_tolerance)
+                resolve_closed(seed, Fingerprint(seed, true), closed);
+        if (failed_.contains(a, apex, c) || failed_.contains(c, apex, a)) resolve_open(seed, tolerance);
     });
 }
 
 /// In 3D also branches over the best fifth point at either end on each side of the plane of the three
 /// points there. True if every branch found a cycle, be it the chain of four itself.
-bool Expansion::expand_four(std::span<const int> four) {
+bool Expansion::expand_four(std::span<const int> four, double tolerance) {
     chain_.assign(four);
-    oracle_.candidates(chain_, End::right, right_fifths_);
-    oracle_.candidates(chain_, End::left, left_fifths_);
-    constexpr Candidate kNobody{std::numeric_limits<double>::infinity(), -1};
-    const auto best = [&](const auto& list) { return list.empty() ? kNobody : list.front(); };
+    const Chain::Saved here = chain_.saved();
+    const ChainOracle::Sides lefts = oracle_.best_on_sides(chain_, End::left, tolerance);
+    const ChainOracle::Sides rights = oracle_.best_on_sides(chain_, End::right, tolerance);
+    for (const End end : {End::right, End::left})
+        for (const Candidate& fifth : end == End::left ? lefts : rights)
+            if (fifth.point >= 0) memo_.prefetch(chain_.fingerprint_with(fifth.point, end));
     four_alone_.reset();
-    bool found = follow_path(Ends{best(left_fifths_), best(right_fifths_)});
-    if (scene_.dimension() == 3) {
-        const int reversed[] = {four[3], four[2], four[1], four[0]};
-        found = expand_side(four, right_fifths_) && found;
-        found = expand_side(reversed, left_fifths_) && found;
-    }
+    bool found = follow_path(tolerance, Ends{*std::min_element(lefts.begin(), lefts.end()),
+                                             *std::min_element(rights.begin(), rights.end())});
+    if (scene_.dimension() != 3) return found;
+    for (const End end : {End::right, End::left})
+        for (const Candidate& fifth : end == End::left ? lefts : rights) {
+            if (fifth.point < 0) continue;
+            chain_.restore(here);
+            chain_.add(fifth.point, end);
+            if (!follow_path(fifth.tolerance) && !resolve_open(four, tolerance)) found = false;
+        }
     return found;
 }
 
-bool Expansion::expand_side(std::span<const int> four, const std::vector<Candidate>& fifths) {
-    bool found = true;
-    bool taken[3] = {false, false, false};
-    for (const Candidate& fifth : fifths) {
-        bool& done = taken[side(four, fifth.point) + 1];
-        if (done) continue;
-        done = true;
-        const int five[] = {four[0], four[1], four[2], four[3], fifth.point};
-        if (!follow(five) && !resolve_open(four)) found = false;
-    }
-    return found;
-}
-
-int Expansion::side(std::span<const int> chain, int point) const {
-    const Point& a = scene_.position(chain[1]);
-    const auto from_a = [&](int i) {
-        const Point& p = scene_.position(i);
-        return Point{p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-    };
-    const Point u = from_a(chain[2]), v = from_a(chain[3]), w = from_a(point);
-    const double volume = (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] +
-                          (u[0] * v[1] - u[1] * v[0]) * w[2];
-    return volume > 0 ? 1 : volume < 0 ? -1 : 0;
-}
-
-/// Adds the point of least E_min at either end until the chain closes at no greater tolerance or
-/// nothing fits; keeps the longest chain met that is unambiguous and has a type. True if there is one.
-bool Expansion::follow(std::span<const int> start) {
-    chain_.assign(start);
-    return follow_path();
-}
-
-/// The same from chain_ on, whose best candidates are `ends`, if known. What follows depends on the chain
+/// From chain_ on, with E_min `tolerance` and the best candidates `ends`, if known: adds the point of least
+/// E_min at either end until the chain closes at no greater tolerance or nothing fits; keeps the longest
+/// chain met that is unambiguous and has a type. True if there is one. What follows depends on the chain
 /// alone, so chains met before end it.
-bool Expansion::follow_path(std::optional<Ends> ends) {
+bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
     const std::size_t first_step = path_.size();
     bool found = false;
     while (true) {
-        const ChainMemo::Id id = remembered(chain_.points());
+        const ChainMemo::Id id = remembered(chain_);
         if (const auto known = id != kNone ? memo_[id].path : Answer::unknown; known != Answer::unknown) {
             found = known == Answer::yes;
             break;
@@ -251,30 +237,37 @@ bool Expansion::follow_path(std::optional<Ends> ends) {
             path_.resize(first_step);
             return true;
         }
+        const Fingerprint ring = chain_.fingerprint_with(chain_.from(End::left, 0), End::right);
+        rings_.prefetch(ring);
         const double closed = oracle_.closed_tolerance(chain_);
-        const auto [left, right] = ends ? *ends : best_ends(std::min(closed, scene_.max_tolerance));
+        // No longer chain is better than this one.
+        if (closed <= tolerance) ends = Ends{ChainOracle::kNobody, ChainOracle::kNobody};
+        const auto [left, right] =
+            ends ? *ends : best_ends(tolerance, std::min(closed, scene_.max_tolerance));
         ends.reset();
         const double best = std::min(right.tolerance, left.tolerance);
         const bool closes = closed <= std::min(best, scene_.max_tolerance);
         const bool ends_here = closes || best > scene_.max_tolerance;
         const bool parts = right.tolerance == left.tolerance && chain_.size() <= kLongestBranching;
         if (ends_here || parts) {
-            found =
-                ends_here ? closes && resolve_closed(chain_.points()) : follow_both(left.point, right.point);
-            found = found || resolve_open(chain_.points(), id);
+            found = ends_here ? closes && resolve_closed(chain_.points(), ring, closed)
+                              : follow_both(left, right);
+            found = found || resolve_open(chain_.points(), tolerance, id);
             if (id != kNone) memo_[id].path = answer(found);
             break;
         }
         const End to = better_end(left, right);
-        path_.push_back({id, to});
-        chain_.add(to == End::right ? right.point : left.point, to);
+        path_.push_back({id, to, tolerance});
+        const Candidate& next = to == End::right ? right : left;
+        chain_.add(next.point, to);
+        tolerance = next.tolerance;
     }
     // Back along the path, each chain a window of the last.
     std::span<const int> window = chain_.points();
     for (; path_.size() > first_step; path_.pop_back()) {
-        const auto [id, added_at] = path_.back();
+        const auto [id, added_at, window_tolerance] = path_.back();
         window = added_at == End::right ? window.first(window.size() - 1) : window.subspan(1);
-        found = found || resolve_open(window, id);
+        found = found || resolve_open(window, window_tolerance, id);
         if (id != kNone) memo_[id].path = answer(found);
     }
     return found;
@@ -289,29 +282,31 @@ End Expansion::better_end(const Candidate& left, const Candidate& right) const {
 
 /// Where both ends are equally good, a chain and its reverse part ways, and both are followed: true if there
 /// is a cycle on both.
-bool Expansion::follow_both(int left, int right) {
-    const std::vector<int> here(chain_.points().begin(), chain_.points().end());
-    chain_.add(right, End::right);
-    const bool found = follow_path();
-    chain_.assign(here);
-    chain_.add(left, End::left);
-    const bool found_left = follow_path();
-    chain_.assign(here);
+bool Expansion::follow_both(const Candidate& left, const Candidate& right) {
+    memo_.prefetch(chain_.fingerprint_with(right.point, End::right));
+    memo_.prefetch(chain_.fingerprint_with(left.point, End::left));
+    const Chain::Saved here = chain_.saved();
+    chain_.add(right.point, End::right);
+    const bool found = follow_path(right.tolerance);
+    chain_.restore(here);
+    chain_.add(left.point, End::left);
+    const bool found_left = follow_path(left.tolerance);
+    chain_.restore(here);
     return found && found_left;
 }
 
 /// What the second end offers counts only if it is as good as the first.
-Expansion::Ends Expansion::best_ends(double limit) {
-    const Candidate right = oracle_.best_candidate(chain_, End::right, limit);
-    return {oracle_.best_candidate(chain_, End::left, std::min(limit, right.tolerance)), right};
+Expansion::Ends Expansion::best_ends(double least, double limit) {
+    const Candidate right = oracle_.best_candidate(chain_, End::right, least, limit);
+    return {oracle_.best_candidate(chain_, End::left, least, std::min(limit, right.tolerance)), right};
 }
 
-bool Expansion::resolve_open(std::span<const int> chain) {
-    return resolve_open(chain, remembered(chain));
+bool Expansion::resolve_open(std::span<const int> chain, double tolerance) {
+    return resolve_open(chain, tolerance, remembered(chain));
 }
 
-/// Does this chain by itself become a cycle? `id`: its number in the memo.
-bool Expansion::resolve_open(std::span<const int> chain, ChainMemo::Id id) {
+/// Does this chain, with E_min `tolerance`, by itself become a cycle? `id`: its number in the memo.
+bool Expansion::resolve_open(std::span<const int> chain, double tolerance, ChainMemo::Id id) {
     passed_.clear();
     if (id != kNone) {
         if (const auto known = memo_[id].alone; known != Answer::unknown) return known == Answer::yes;
@@ -319,7 +314,7 @@ bool Expansion::resolve_open(std::span<const int> chain, ChainMemo::Id id) {
     } else if (chain.size() == 4 && four_alone_) {
         return *four_alone_;
     }
-    const bool found = oracle_.unambiguous(chain, false) && become_cycle(chain);
+    const bool found = oracle_.unambiguous(chain, false, tolerance) && become_cycle(chain, tolerance);
     for (const ChainMemo::Id p : passed_) memo_[p].alone = answer(found);
     if (chain.size() == 4) four_alone_ = found;
     return found;
@@ -327,56 +322,62 @@ bool Expansion::resolve_open(std::span<const int> chain, ChainMemo::Id id) {
 
 /// C3 by extension, then the types. True if a cycle came out. Each longer chain met on the way
 /// would come to the same end, so one answer serves them all: passed_.
-bool Expansion::become_cycle(std::span<const int> chain) {
-    std::vector<int> s(chain.begin(), chain.end());
-    if (s.front() > s.back()) std::reverse(s.begin(), s.end());
-    while (extend(s)) {
-        if (oracle_.holds(s, true) && oracle_.unambiguous(s, true)) return keep(s, true);
-        const ChainMemo::Id id = remembered(s);
+bool Expansion::become_cycle(std::span<const int> chain, double tolerance) {
+    longer_.assign(chain.begin(), chain.end());
+    if (longer_.front() > longer_.back()) std::reverse(longer_.begin(), longer_.end());
+    extended_.assign(longer_);
+    while (extend(tolerance)) {
+        const double closed = oracle_.closed_tolerance(extended_);
+        if (closed <= scene_.max_tolerance && oracle_.unambiguous(extended_.points(), true, closed))
+            return keep(extended_.points(), true, closed);
+        const ChainMemo::Id id = remembered(extended_);
         if (id == kNone) continue;
         if (const auto known = memo_[id].alone; known != Answer::unknown) return known == Answer::yes;
         passed_.push_back(id);
     }
-    return keep(s, false);
+    return keep(extended_.points(), false, tolerance);
 }
 
 /// A ring is met from each of its points and in both directions; asked once.
-bool Expansion::resolve_closed(std::span<const int> ring) {
-    const CanonicalCycle cycle = canonical(ring, true);
-    const ChainMemo::Id id = rings_.id(cycle.points);
+bool Expansion::resolve_closed(std::span<const int> ring, const Fingerprint& fingerprint, double tolerance) {
+    const ChainMemo::Id id = rings_.id(fingerprint);
     if (rings_[id].alone == Answer::unknown)
-        rings_[id].alone = answer(oracle_.unambiguous(cycle.points, true) && keep(cycle.points, true));
+        rings_[id].alone = answer(oracle_.unambiguous(ring, true, tolerance) && keep(ring, true, tolerance));
     return rings_[id].alone == Answer::yes;
 }
 
-/// Adds the cycle if it has a type.
-bool Expansion::keep(std::span<const int> sequence, bool closed) {
+/// Adds the cycle, with E_min `tolerance`, if it has a type.
+bool Expansion::keep(std::span<const int> sequence, bool closed, double tolerance) {
     CanonicalCycle cycle = canonical(sequence, closed);
-    const TypeSet types =
-        type_oracle_.types(cycle.points, closed, oracle_.interval(cycle.points, closed).min);
+    const TypeSet types = type_oracle_.types(cycle.points, closed, tolerance);
     if (types.empty()) return false;
     found_.emplace_back(std::move(cycle), types);
     return true;
 }
 
-/// C3: takes the point of least E_min at either end that keeps C1 and C2; ties by the sequence.
-bool Expansion::extend(std::vector<int>& sequence) {
-    extended_.assign(sequence);
-    std::vector<std::pair<double, std::vector<int>>> longer;
+/// C3: extended_ takes the point of least E_min at either end that keeps C1 and C2; ties by the longer
+/// sequence.
+bool Expansion::extend(double& tolerance) {
+    const auto points = extended_.points();
+    extensions_.clear();
     for (const End end : {End::left, End::right}) {
-        oracle_.candidates(extended_, end, extensions_);
-        for (const Candidate& candidate : extensions_) {
-            std::vector<int> s = sequence;
-            s.insert(end == End::left ? s.begin() : s.end(), candidate.point);
-            longer.emplace_back(candidate.tolerance, std::move(s));
-        }
+        oracle_.candidates(extended_, end, candidates_);
+        for (const Candidate& candidate : candidates_) extensions_.push_back({candidate, end});
     }
-    std::sort(longer.begin(), longer.end());
-    for (auto& [tolerance, s] : longer)
-        if (oracle_.unambiguous(s, false)) {
-            sequence = std::move(s);
-            return true;
-        }
+    std::sort(extensions_.begin(), extensions_.end(), [&](const Extension& x, const Extension& y) {
+        if (x.candidate.tolerance != y.candidate.tolerance)
+            return x.candidate.tolerance < y.candidate.tolerance;
+        if (x.end == y.end) return x.candidate.point < y.candidate.point;
+        return x.end == End::left ? x.candidate.point < points.front() : points.front() < y.candidate.point;
+    });
+    for (const auto& [candidate, end] : extensions_) {
+        longer_.assign(points.begin(), points.end());
+        longer_.insert(end == End::left ? longer_.begin() : longer_.end(), candidate.point);
+        if (!oracle_.unambiguous(longer_, false, candidate.tolerance)) continue;
+        extended_.add(candidate.point, end);
+        tolerance = candidate.tolerance;
+        return true;
+    }
     return false;
 }
 
