@@ -128,7 +128,7 @@ void run_robust(const PointScene& scene, const DetectOptions& options, RunMonito
     const Significance significance(scene);
     RobustResult found = detect_robust(scene, significance, options.types, monitor);
     result.symmetries = std::move(found.symmetries);
-    result.max_tolerance = found.max_tolerance;
+    if (!options.max_tolerance) result.max_tolerance = found.max_tolerance;
     const Measure measure(scene, significance);
     parallel_for(result.symmetries.size(), [&](std::size_t i) { measure.complete(result.symmetries[i]); });
     promote_generators(scene, result.symmetries);

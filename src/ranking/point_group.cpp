@@ -195,11 +195,11 @@ public:
             name(group);
             return group;
         }
-        // With slots for the full group, or for those alone that need none.
-        for (const bool complete : {false, true}) {
-            grow(complete);
-            if (!slots_too_many()) break;
-        }
+        // With slots for the full group, or with those alone that need none where they are as many.
+        grow(true);
+        const std::size_t complete = elements_.size();
+        grow(false);
+        if (slots_too_many() || elements_.size() <= complete) grow(true);
         if (slots_too_many() || elements_.empty()) return group;
         name(group);
         group.empty_slots = static_cast<int>(slots_.size());
@@ -326,9 +326,11 @@ private:
         return exact ? tolerance_ : std::max(tolerance_, kShareOfGap * gap_);
     }
 
-    /// Noise moves the maps of a small set by so much that their products do not quite close.
+    /// Noise moves the maps of a few points by so much that their products do not quite close.
     void add_element(const Matrix3d& m) {
-        const double same = std::clamp(6 * tolerance_ / radius_, 2 * kSameMap, 6 * kSameMap);
+        constexpr int kFewPoints = 12;
+        const double most = scene_.size() <= kFewPoints ? 6 * kSameMap : 2 * kSameMap;
+        const double same = std::clamp(6 * tolerance_ / radius_, 2 * kSameMap, most);
         for (const Matrix3d& e : elements_)
             if ((e - m).norm() < same) return;
         elements_.push_back(m);

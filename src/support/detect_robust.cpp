@@ -28,8 +28,7 @@ constexpr double kListed = 1;
 double largest_reach(const PointScene& scene, const Significance& significance) {
     constexpr double kChance = 0.12;
     double reach = scene.resolution;
-    while (2 * reach < scene.max_tolerance && significance.background().chance(1.2 * reach) < kChance)
-        reach *= 1.2;
+    while (reach < scene.max_tolerance && significance.background().chance(1.2 * reach) < kChance) reach *= 1.2;
     return std::min(reach, scene.max_tolerance);
 }
 

@@ -556,8 +556,17 @@ def test_limit(box):
     path = box.points("a.xyz", ring(12)).name
     count = len(box.report(path)["symmetries"])
     assert count > 2
-    assert f"{count - 2} more; --limit 0 shows all" in box.run("detect", path, "--limit", "2").stdout.decode()
-    assert b" more;" not in box.run("detect", path, "--limit", "0").stdout
+    assert f"{count - 2} more; --limit 0 shows all" in box.run("detect", path, "--all", "--limit", "2").stdout.decode()
+    assert b" more;" not in box.run("detect", path, "--all", "--limit", "0").stdout
+
+
+def test_what_follows_is_folded(box):
+    path = box.points("a.xyz", ring(12)).name
+    symmetries = box.report(path)["symmetries"]
+    folded = sum(bool(s["implied_by"]) for s in symmetries)
+    assert folded > 0
+    assert f"{folded} that follow from these" in box.run("detect", path, "--limit", "0").stdout.decode()
+    assert b"that follow from these" not in box.run("detect", path, "--limit", "0", "--all").stdout
 
 
 def test_types_are_chosen(box):
