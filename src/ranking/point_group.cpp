@@ -199,7 +199,7 @@ public:
         grow(true);
         const std::size_t complete = elements_.size();
         grow(false);
-        if (slots_too_many() || elements_.size() <= complete) grow(true);
+        if (slots_too_many() || elements_.size() <= complete || !holds()) grow(true);
         if (slots_too_many() || elements_.empty()) return group;
         name(group);
         group.empty_slots = static_cast<int>(slots_.size());
@@ -243,7 +243,7 @@ private:
                 s.type == SymmetryType::glide_reflection)
                 continue;
             // A tolerance of the size of the gaps between points says nothing about their places.
-            if (s.deviation.max > 0.2 * gap_) continue;
+            if (s.deviation.max > 0.12 * gap_) continue;
             Candidate c{k, map_of(s, middle_), std::max({1.5 * s.deviation.max, 2 * scene_.resolution}), {}};
             // Points of no orbit that stay nearly in place: noise moves them, too.
             constexpr double kShareOfGap = 0.08;
@@ -326,11 +326,32 @@ private:
         return exact ? tolerance_ : std::max(tolerance_, kShareOfGap * gap_);
     }
 
-    /// Noise moves the maps of a few points by so much that their products do not quite close.
+    Vector3d center() const {
+        Vector3d sum = Vector3d::Zero();
+        for (const Vector3d& p : places_) sum += p;
+        for (const auto& [place, label] : slots_) sum += place;
+        return sum / static_cast<double>(places_.size() + slots_.size());
+    }
+
+    /// Every element takes every point to a point or to an empty slot.
+    bool holds() const {
+        const Vector3d middle = center();
+        const double reach = 3 * tolerance_;
+        return std::all_of(elements_.begin(), elements_.end(), [&](const Matrix3d& m) {
+            for (int i = 0; i < scene_.size(); ++i) {
+                const Vector3d image = m * (places_[static_cast<std::size_t>(i)] - middle) + middle;
+                const bool slot = std::any_of(slots_.begin(), slots_.end(), [&](const auto& s) {
+                    return s.second == scene_.label(i) && (s.first - image).norm() <= reach;
+                });
+                if (!slot && !point_near(image, scene_.label(i), reach)) return false;
+            }
+            return true;
+        });
+    }
+
+    /// Noise moves the maps by so much that their products do not quite close.
     void add_element(const Matrix3d& m) {
-        constexpr int kFewPoints = 12;
-        const double most = scene_.size() <= kFewPoints ? 6 * kSameMap : 2 * kSameMap;
-        const double same = std::clamp(6 * tolerance_ / radius_, 2 * kSameMap, most);
+        const double same = std::clamp(6 * tolerance_ / radius_, 2 * kSameMap, 6 * kSameMap);
         for (const Matrix3d& e : elements_)
             if ((e - m).norm() < same) return;
         elements_.push_back(m);
@@ -360,10 +381,7 @@ private:
             group.schoenflies = n.schoenflies;
             group.hermann_mauguin = n.hermann_mauguin;
         }
-        Vector3d sum = Vector3d::Zero();
-        for (const Vector3d& p : places_) sum += p;
-        for (const auto& [place, label] : slots_) sum += place;
-        group.center = to_point(middle_ + sum / static_cast<double>(places_.size() + slots_.size()));
+        group.center = to_point(middle_ + center());
     }
 
     void add_slots(Symmetry& s) const {
