@@ -92,6 +92,34 @@ bool listed(const Symmetry& s) {
     return !is_pair_type(s.type) || s.coverage >= 1 || s.cycles.size() + s.fixed_points.size() >= 4;
 }
 
+/// Past the deadline the largest are measured, and it is said how many more there were.
+void measure_largest_first(const Measure& measure, RunMonitor& monitor, DetectResult& result) {
+    constexpr std::size_t kAlways = 2000, kBlock = 512;
+    std::vector<Symmetry>& all = result.symmetries;
+    const auto points = [](const Symmetry& s) {
+        std::size_t sum = 0;
+        for (const Orbit& o : s.cycles) sum += o.points.size();
+        return sum;
+    };
+    std::stable_sort(all.begin(), all.end(),
+                     [&](const Symmetry& a, const Symmetry& b) { return points(a) > points(b); });
+    std::size_t done = 0;
+    while (done < all.size() && (done < kAlways || !monitor.should_stop())) {
+        const std::size_t end = std::min(all.size(), done + kBlock);
+        parallel_for(end - done, [&](std::size_t i) {
+            Symmetry& s = all[done + i];
+            measure.complete(s);
+            s.significance = measure.significance_of(s);
+        });
+        done = end;
+    }
+    if (done == all.size()) return;
+    result.diagnostics.push_back(
+        {"not_measured",
+         std::to_string(all.size() - done) + " smaller symmetries were left out when the time was up"});
+    all.resize(done);
+}
+
 void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
     const auto start = std::chrono::steady_clock::now();
     // Pairs need no cycles; a run that asks for pairs alone does not pay for them.
@@ -106,10 +134,7 @@ void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& mon
     result.symmetries = std::move(found.symmetries);
     const Significance significance(scene);
     const Measure measure(scene, significance);
-    parallel_for(result.symmetries.size(), [&](std::size_t i) {
-        measure.complete(result.symmetries[i]);
-        result.symmetries[i].significance = measure.significance_of(result.symmetries[i]);
-    });
+    measure_largest_first(measure, monitor, result);
     std::erase_if(result.symmetries, [](const Symmetry& s) { return !listed(s); });
     rank(result.symmetries);
     result.timing.symmetries_s = seconds_since(after_cycles);
@@ -131,9 +156,9 @@ void run_robust(const PointScene& scene, const DetectOptions& options, RunMonito
     if (!options.max_tolerance) result.max_tolerance = found.max_tolerance;
     const Measure measure(scene, significance);
     parallel_for(result.symmetries.size(), [&](std::size_t i) { measure.complete(result.symmetries[i]); });
-    promote_generators(scene, result.symmetries);
+    promote_generators(scene, result.symmetries, monitor);
     rank(result.symmetries);
-    mark_implied(scene, result.symmetries);
+    mark_implied(scene, result.symmetries, monitor);
     result.group = point_group(scene, result.symmetries);
     result.timing.symmetries_s = seconds_since(start);
     result.stats = {found.hypotheses, 0, result.symmetries.size()};

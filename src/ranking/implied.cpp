@@ -148,7 +148,8 @@ double slack_of(const Item& a, const Item& b, const Item& c) {
 
 }  // namespace
 
-void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetries) {
+void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetries, RunMonitor& monitor) {
+    if (monitor.should_stop()) return;
     const Implications all(scene, symmetries);
     constexpr double kShare = 0.4;  // of a power's significance that its generator must have by itself
     // The largest turns and steps first, so that the smallest has the last word.
@@ -161,7 +162,7 @@ void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetri
     };
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return motion(a) > motion(b); });
-    for (std::size_t i = 0; i < order.size(); ++i) {
+    for (std::size_t i = 0; i < order.size() && !monitor.should_stop(); ++i) {
         const std::size_t g = order[i];
         std::vector<RigidMap> powers = all.powers(g, kMostPowers);
         powers.erase(powers.begin(), powers.begin() + 2);
@@ -186,13 +187,14 @@ void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetri
     }
 }
 
-void mark_implied(const PointScene& scene, std::vector<Symmetry>& symmetries) {
+void mark_implied(const PointScene& scene, std::vector<Symmetry>& symmetries, RunMonitor& monitor) {
+    if (monitor.should_stop()) return;
     constexpr std::size_t kMostGenerators = 24;
     constexpr int kMostWordPowers = 12;
     const Implications all(scene, symmetries);
     std::vector<std::size_t> generators;
     std::vector<std::vector<RigidMap>> powers;
-    for (std::size_t k = 0; k < symmetries.size(); ++k) {
+    for (std::size_t k = 0; k < symmetries.size() && !monitor.should_stop(); ++k) {
         const Item& a = all[k];
         std::vector<std::size_t> able;  // of the generators, those that carry these points
         for (std::size_t g = 0; g < generators.size(); ++g)

@@ -24,7 +24,7 @@ std::vector<Point> about(const PointScene& scene, const Eigen::Vector3d& middle)
 Cloud::Cloud(const PointScene& scene) : scene_(scene), middle_(mean_of(scene)), grid_(about(scene, middle_)) {
     points_.reserve(scene.points.size());
     for (int i = 0; i < scene.size(); ++i) {
-        points_.push_back(to_vector(scene.position(i)) - middle_);
+        points_.emplace_back(to_vector(scene.position(i)) - middle_);
         radius_ = std::max(radius_, points_.back().norm());
     }
 }

@@ -28,7 +28,8 @@ constexpr double kListed = 1;
 double largest_reach(const PointScene& scene, const Significance& significance) {
     constexpr double kChance = 0.12;
     double reach = scene.resolution;
-    while (reach < scene.max_tolerance && significance.background().chance(1.2 * reach) < kChance) reach *= 1.2;
+    while (reach < scene.max_tolerance && significance.background().chance(1.2 * reach) < kChance)
+        reach *= 1.2;
     return std::min(reach, scene.max_tolerance);
 }
 
@@ -226,12 +227,27 @@ private:
         }
     }
 
+    /// Once the time is up only the best are laid out.
+    double worst_after_deadline() const {
+        constexpr std::size_t kBest = 500;
+        std::vector<double> all;
+        for (const Support& s : collection_.supports()) all.push_back(s.significance);
+        if (all.size() <= kBest) return std::numeric_limits<double>::infinity();
+        const auto last = all.begin() + kBest;
+        std::nth_element(all.begin(), last, all.end());
+        return *last;
+    }
+
     std::vector<Symmetry> symmetries(TypeSet types) {
         const std::vector<Support>& supports = collection_.supports();
         std::vector<Symmetry> out(supports.size());
         std::vector<char> keep(supports.size(), 0);
+        const double worst = worst_after_deadline();
+        monitor_.begin_stage("patterns", supports.size());
         parallel_for(supports.size(), [&](std::size_t k) {
+            monitor_.advance();
             if (!types.contains(supports[k].type)) return;
+            if (supports[k].significance > worst && monitor_.should_stop()) return;
             Pattern p = trace(cloud_, significance_, supports[k]);
             if (p.runs.empty()) return;
             if (p.significance > kListed && !gatherer_.whole(supports[k])) return;
