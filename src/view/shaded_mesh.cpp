@@ -40,6 +40,23 @@ Facet facet_of(const Tessellation& model, const std::array<int, 3>& triangle) {
     return facet;
 }
 
+/// With one vertex for each position, so that normals go on over seams and from face to face.
+Tessellation welded(const Tessellation& model) {
+    Tessellation result;
+    result.faces = model.faces;
+    std::map<Point, int> known;
+    std::vector<int> vertex_of;
+    for (const Point& p : model.vertices) {
+        const auto [place, is_new] = known.try_emplace(p, static_cast<int>(result.vertices.size()));
+        if (is_new) result.vertices.push_back(p);
+        vertex_of.push_back(place->second);
+    }
+    result.triangles = model.triangles;
+    for (auto& triangle : result.triangles)
+        for (int& v : triangle) v = vertex_of[static_cast<std::size_t>(v)];
+    return result;
+}
+
 std::array<float, 3> unit(const Vector& v, const Vector& otherwise) {
     const double length = std::sqrt(dot(v, v));
     std::array<float, 3> result{};
@@ -50,7 +67,8 @@ std::array<float, 3> unit(const Vector& v, const Vector& otherwise) {
 
 }  // namespace
 
-ShadedMesh shade(const Tessellation& model, const Point& origin) {
+ShadedMesh shade(const Tessellation& tessellation, const Point& origin) {
+    const Tessellation model = welded(tessellation);
     std::vector<Facet> facets;
     facets.reserve(model.triangles.size());
     std::vector<std::vector<std::size_t>> around(model.vertices.size());

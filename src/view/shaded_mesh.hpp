@@ -18,6 +18,6 @@ struct ShadedMesh {
 };
 
 /// Positions are taken relative to `origin`, so that single precision does for models far from zero.
-ShadedMesh shade(const Tessellation& model, const Point& origin);
+ShadedMesh shade(const Tessellation& tessellation, const Point& origin);
 
 }  // namespace insym

@@ -67,6 +67,7 @@ export class ToleranceAxis {
     const last = Math.floor(Math.log10(this.high));
     const every = Math.ceil((last - first + 1) / 5);
     for (let e = first; e <= last; e += every) {
+      if (this.x(Math.pow(10, e)) < 0.03 || this.x(Math.pow(10, e)) > 0.97) continue; // would stick out
       const tick = h("span", {}, number(Math.pow(10, e), 2));
       tick.style.left = `${100 * this.x(Math.pow(10, e))}%`;
       ticks.append(tick);

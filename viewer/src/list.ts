@@ -75,7 +75,6 @@ export class List {
         this.fold(s.id);
       },
     }, `${row.open ? "▾" : "▸"} ${row.folded}`);
-    const order = s.order === null ? "" : `order ${s.order}`;
     const item = h("div", {
       class: "row" + (row.implied ? " implied" : "") + (s.id === this.selected ? " selected" : ""),
       id: `row-${s.id}`, role: "option", "aria-selected": String(s.id === this.selected),
@@ -83,7 +82,7 @@ export class List {
     },
     h("span", {class: "rank"}, String(s.id)),
     h("span", {class: `badge kind-${s.type}`}, symbol(s)),
-    h("span", {class: "what"}, h("b", {}, kindWord(s)), " ", order && kindWord(s) !== "half-turn" ? order : ""),
+    h("span", {class: "what"}, h("b", {}, kindWord(s)), h("small", {}, " " + this.words.where(s))),
     h("span", {class: "count"}, this.words.cycles(s)),
     h("span", {class: "figures"},
       h("span", {title: "largest distance of an image from its point"}, `dev. ${this.words.deviation(s.deviation.max)}`),
