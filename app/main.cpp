@@ -167,8 +167,8 @@ std::vector<std::pair<std::string, Writer>> files_of(const Options& options, con
     add(options.json, [&](std::ostream& out) { write_json(out, result, context); });
 #ifdef INSYM_WITH_VIEW
     add(options.html, [&](std::ostream& out) { write_page(out, result, context, model, options.shown); });
-    //add(options.gltf, [&](std::ostream& out) { write_gltf(out, result, model); });
-    //add(options.png, [&](std::ostream& out) { write_png(out, result, context, model); });
+    add(options.gltf, [&](std::ostream& out) { write_gltf(out, result, context, model); });
+    add(options.png, [&](std::ostream& out) { write_png(out, result, context, model, options.threads); });
 #endif
     return files;
 }

@@ -17,4 +17,15 @@ namespace insym {
 INSYM_EXPORT void write_page(std::ostream& out, const DetectResult& result, const ReportContext& context,
                              const Tessellation& model, int limit = 0);
 
+/// Writes the model with the first symmetry as a scene in binary glTF 2.0 (.glb), for Blender, f3d,
+/// PowerPoint and others: the faces, edges and points of each cycle in a colour, the axis or plane, the empty
+/// slots. In metres where the unit is known, y up. Thread-safe.
+INSYM_EXPORT void write_gltf(std::ostream& out, const DetectResult& result, const ReportContext& context,
+                             const Tessellation& model);
+
+/// Writes a still picture (PNG) of the first symmetries, up to four that no other implies, each with a line
+/// of words. A few seconds; uses up to `threads` threads (0: all cores), which do not change it.
+INSYM_EXPORT void write_png(std::ostream& out, const DetectResult& result, const ReportContext& context,
+                            const Tessellation& model, int threads = 0);
+
 }  // namespace insym

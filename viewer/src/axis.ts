@@ -68,7 +68,7 @@ export class ToleranceAxis {
     const every = Math.ceil((last - first + 1) / 5);
     for (let e = first; e <= last; e += every) {
       if (this.x(Math.pow(10, e)) < 0.03 || this.x(Math.pow(10, e)) > 0.97) continue; // would stick out
-      const tick = h("span", {}, number(Math.pow(10, e), 2));
+      const tick = h("span", {}, number(Math.pow(10, e)));
       tick.style.left = `${100 * this.x(Math.pow(10, e))}%`;
       ticks.append(tick);
     }
@@ -91,7 +91,7 @@ export class ToleranceAxis {
     let holding = 0;
     for (let x = 0; x < width; ++x) {
       holding += changes[x];
-      const tall = most > 0 ? (Math.sqrt(holding / most)) * height : 0;
+      const tall = most > 0 ? (holding / most) * height : 0;
       context.fillRect(x, height - tall, 1, tall);
     }
   }

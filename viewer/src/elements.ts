@@ -34,7 +34,18 @@ function footOnLine(p: Vector3, d: Vector3): Vector3 {
   return p.clone().addScaledVector(d, -p.dot(d));
 }
 
-export function drawElements(s: Symmetry, frame: Frame, colour: Color, sign: number, flat: boolean): Group {
+/// How far the outline reaches along a direction, and a margin.
+function extent(outline: Vector3[], along: Vector3): [number, number] {
+  let low = 0;
+  let high = 0;
+  for (const p of outline) {
+    low = Math.min(low, p.dot(along));
+    high = Math.max(high, p.dot(along));
+  }
+  return [low - 0.08, high + 0.08];
+}
+
+export function drawElements(s: Symmetry, frame: Frame, colour: Color, sign: number, flat: boolean, outline: Vector3[]): Group {
   const group = new Group();
   const {axis, plane, center, angle_deg, step} = s.isometry;
   const solid = new LineSet();
@@ -50,9 +61,10 @@ export function drawElements(s: Symmetry, frame: Frame, colour: Color, sign: num
       dashed.add(foot.clone().addScaledVector(along, -kReach), foot.clone().addScaledVector(along, kReach), colour);
     } else {
       const [u, v] = twoNormalTo(n);
-      const reach = Math.sqrt(Math.max(0.2, kReach * kReach - foot.lengthSq())) * 0.8;
-      const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) =>
-        foot.clone().addScaledVector(u, a * reach).addScaledVector(v, b * reach));
+      const [left, right] = extent(outline, u);
+      const [bottom, top] = extent(outline, v);
+      const corners = [[left, bottom], [right, bottom], [right, top], [left, top]].map(([a, b]) =>
+        foot.clone().addScaledVector(u, a).addScaledVector(v, b));
       group.add(quad(corners, colour));
       solid.path(corners, true, colour);
     }

@@ -27,7 +27,7 @@ void main() {
   if (r > 1.0) discard;
   if (vMark > 0.5 && r < 0.62) discard;
   if (vMark > 1.5 && fract(atan(p.y, p.x) * 0.9549297) > 0.62) discard;
-  gl_FragColor = vec4(vMark < 0.5 && r > 0.78 ? rim : vColour, opacity);
+  gl_FragColor = vec4(vMark < 0.5 && r > 0.82 ? rim : vColour, opacity);
   #include <colorspace_fragment>
 }`;
 

@@ -220,10 +220,10 @@ export class Stage {
     const ink = new Color(this.theme.ink);
     for (const i of s.fixed_points) mark(this.positions[i], ink, Mark.ring);
     for (const slot of s.missing) mark(this.frame.point(slot.position), new Color(this.theme.element), Mark.broken);
-    const size = this.pixels(positions.length > 3000 ? 7 : 11);
+    const size = this.pixels(positions.length > 1000 ? 6 : positions.length > 200 ? 8 : 11);
     const rim = this.theme.background;
     const layers = [
-      edges.make(3, 1, false),
+      edges.make(2.6, 1, false),
       this.hasModel ? paths.make(1.6, 0.4, true) : null, // seen through the model
       paths.make(2.4, 1, false),
       this.hasModel ? makePoints(positions, shades, marks, {size: size * 0.8, opacity: 0.45, rim, through: true}) : null,
@@ -231,7 +231,17 @@ export class Stage {
     ];
     for (const layer of layers) if (layer) this.overlay.add(layer);
     const {sign} = motionOf(s, this.frame);
-    this.overlay.add(drawElements(s, this.frame, new Color(this.theme.element), sign, this.flat));
+    this.overlay.add(drawElements(s, this.frame, new Color(this.theme.element), sign, this.flat, this.outline()));
+  }
+
+  /// Points that say how far the model reaches.
+  private outline(): Vector3[] {
+    const outline = [...this.positions];
+    const {positions} = this.model;
+    const every = 3 * Math.ceil(positions.length / 3 / 5000);
+    for (let i = 0; i < positions.length; i += every)
+      outline.push(new Vector3().fromArray(positions, i).multiplyScalar(this.frame.scale));
+    return outline;
   }
 
   private drawMover(): void {

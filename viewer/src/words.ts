@@ -24,8 +24,9 @@ export function symbol(s: Symmetry): string {
 export function number(x: number, digits = 4): string {
   if (x === 0) return "0";
   const size = Math.abs(x);
-  const text = size >= 1e6 || size < 1e-4 ? x.toExponential(digits - 2) : x.toPrecision(digits);
-  return text.replace(/(\.\d*?)0+(?=e|$)/, "$1").replace(/\.(?=e|$)/, "").replace("-", "−");
+  const rounded = Number(x.toPrecision(digits));
+  const text = size >= 1e6 || size < 1e-4 ? rounded.toExponential().replace("e+", "e") : String(rounded);
+  return text.replaceAll("-", "−");
 }
 
 export class Words {
@@ -66,7 +67,7 @@ export class Words {
     const points = new Set(s.cycles.flatMap((cycle) => cycle.points)).size;
     if (sizes.length === 0) return "";
     if (sizes.every((size) => size === sizes[0])) return `${sizes.length} × ${sizes[0]} points`;
-    return `${sizes.length} cycles, ${points} points`;
+    return `${sizes.length} cycles of ${points} points`;
   }
 
   where(s: Symmetry): string {
