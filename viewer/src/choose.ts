@@ -56,8 +56,9 @@ export class Chooser {
     const point = filter.through;
     if (point !== null && !s.fixed_points.includes(point) && !s.cycles.some((c) => c.points.includes(point)))
       return false;
-    const query = filter.query.trim().toLowerCase();
-    return query === "" || query.split(/\s+/).every((word) => this.text(s).includes(word));
+    // Phrases between commas: all of them.
+    return filter.query.toLowerCase().split(",").map((phrase) => phrase.trim())
+      .every((phrase) => phrase === "" || this.text(s).includes(phrase));
   }
 
   rows(filter: Filter, open: Set<number>): Row[] {

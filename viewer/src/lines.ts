@@ -1,8 +1,10 @@
-// Lines of a width in pixels, coloured by segment.
-import {Color, type Vector3} from "three";
+// Lines of a width in pixels, coloured by segment; very many are one pixel wide, which every graphics card does fast.
+import {BufferAttribute, BufferGeometry, Color, LineBasicMaterial, LineSegments, type Vector3} from "three";
 import {LineMaterial} from "three/examples/jsm/lines/LineMaterial.js";
 import {LineSegments2} from "three/examples/jsm/lines/LineSegments2.js";
 import {LineSegmentsGeometry} from "three/examples/jsm/lines/LineSegmentsGeometry.js";
+
+const kManySegments = 12000;
 
 export class LineSet {
   private readonly positions: number[] = [];
@@ -18,8 +20,9 @@ export class LineSet {
     if (closed && points.length > 2) this.add(points[points.length - 1], points[0], colour);
   }
 
-  make(width: number, opacity: number, through: boolean, dashed = 0): LineSegments2 | null {
+  make(width: number, opacity: number, through: boolean, dashed = 0): LineSegments2 | LineSegments | null {
     if (this.positions.length === 0) return null;
+    if (this.positions.length > 6 * kManySegments) return this.makeThin(opacity, through);
     const geometry = new LineSegmentsGeometry();
     geometry.setPositions(this.positions);
     geometry.setColors(this.colours);
@@ -31,5 +34,12 @@ export class LineSet {
     if (dashed > 0) lines.computeLineDistances();
     lines.frustumCulled = false;
     return lines;
+  }
+
+  private makeThin(opacity: number, through: boolean): LineSegments {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(this.positions), 3));
+    geometry.setAttribute("color", new BufferAttribute(new Float32Array(this.colours), 3));
+    return new LineSegments(geometry, new LineBasicMaterial({vertexColors: true, transparent: true, opacity, depthTest: !through}));
   }
 }

@@ -34,6 +34,7 @@ export class List {
     const {scrollTop, clientHeight} = this.element;
     if (i * kRowHeight < scrollTop) this.element.scrollTop = i * kRowHeight;
     else if ((i + 1) * kRowHeight > scrollTop + clientHeight) this.element.scrollTop = (i + 1) * kRowHeight - clientHeight;
+    this.draw();
   }
 
   private ask(): void {

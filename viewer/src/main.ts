@@ -45,7 +45,7 @@ const detail = new Detail(element("detail"), report, words, {
 // The parts of the page ----------------------------------------------------------------------------
 
 const search = h("input", {
-  type: "search", placeholder: "Search: hole, order 8, #12 …", "aria-label": "Search",
+  type: "search", placeholder: "Search, as in: mirror, hole", "aria-label": "Search",
   input: () => {
     filter.query = search.value;
     showList();

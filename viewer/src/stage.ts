@@ -13,6 +13,7 @@ import {makePoints, Mark} from "./points";
 import {type Frame, frameOf, type Model, type Report, type Symmetry} from "./report";
 
 const kPickRadius = 14; // pixels
+const kManyPoints = 5000; // smooth edges would take too long
 
 export class Stage {
   readonly frame: Frame;
@@ -43,7 +44,7 @@ export class Stage {
     report.entities?.forEach((entity, i) => {
       for (const id of entity.ids ?? [entity.id]) this.pointOf.set(`${entity.kind} ${id}`, i);
     });
-    this.renderer = new WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
+    this.renderer = new WebGLRenderer({canvas, antialias: report.points.length < kManyPoints});
     this.renderer.localClippingEnabled = true;
     if (!this.flat) this.camera.up.set(0, 0, 1); // before the controls, which take it once
     this.controls = new OrbitControls(this.camera, canvas);
