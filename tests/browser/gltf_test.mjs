@@ -5,9 +5,9 @@ import {execFileSync} from "node:child_process";
 import {mkdtempSync, readdirSync, readFileSync, rmSync} from "node:fs";
 import {createRequire} from "node:module";
 import {tmpdir} from "node:os";
-import {join} from "node:path";
+import {join, resolve} from "node:path";
 
-const [program, modules, sources] = process.argv.slice(2);
+const [program, modules, sources] = process.argv.slice(2).map((path) => resolve(path));
 let validator;
 try {
   validator = createRequire(join(modules, "x.js"))("gltf-validator");

@@ -11,7 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-PROGRAM, SOURCES = Path(sys.argv[1]), Path(sys.argv[2])
+PROGRAM, SOURCES = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 
 
 def commands():

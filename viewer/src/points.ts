@@ -19,6 +19,7 @@ void main() {
 const kFragment = `
 uniform float opacity;
 uniform vec3 rim;
+uniform float rimStart;
 varying vec3 vColour;
 varying float vMark;
 void main() {
@@ -27,7 +28,7 @@ void main() {
   if (r > 1.0) discard;
   if (vMark > 0.5 && r < 0.62) discard;
   if (vMark > 1.5 && fract(atan(p.y, p.x) * 0.9549297) > 0.62) discard;
-  gl_FragColor = vec4(vMark < 0.5 && r > 0.82 ? rim : vColour, opacity);
+  gl_FragColor = vec4(vMark < 0.5 && r > rimStart ? rim : vColour, opacity);
   #include <colorspace_fragment>
 }`;
 
@@ -47,7 +48,10 @@ export function makePoints(positions: Vector3[], colours: Color[], marks: Mark[]
   const material = new ShaderMaterial({
     vertexShader: kVertex,
     fragmentShader: kFragment,
-    uniforms: {size: {value: style.size}, opacity: {value: style.opacity}, rim: {value: new Color(style.rim)}},
+    uniforms: {
+      size: {value: style.size}, opacity: {value: style.opacity}, rim: {value: new Color(style.rim)},
+      rimStart: {value: style.size < 7 ? 2 : 0.8}, // small ones have none
+    },
     transparent: true,
     depthTest: !style.through,
     depthWrite: false,

@@ -139,7 +139,7 @@ export class Stage {
     const sides = this.theme.halves.map((c) => new Color(c).lerp(plain, 0.35));
     const colours = this.positions.map((p) =>
       halves && !this.hasModel ? sides[p.dot(halves.normal) >= halves.offset ? 0 : 1] : plain);
-    const size = this.pixels(this.hasModel ? 5 : this.positions.length > 3000 ? 5 : 8);
+    const size = this.pixels(this.hasModel ? (this.shown ? 3 : 5) : this.positions.length > 3000 ? 5 : 8);
     const marks = this.positions.map(() => Mark.disc);
     this.base.add(makePoints(this.positions, colours, marks, {size, opacity: 1, rim: this.theme.background, through: false}));
   }
@@ -221,12 +221,14 @@ export class Stage {
     const ink = new Color(this.theme.ink);
     for (const i of s.fixed_points) mark(this.positions[i], ink, Mark.ring);
     for (const slot of s.missing) mark(this.frame.point(slot.position), new Color(this.theme.element), Mark.broken);
-    const size = this.pixels(positions.length > 1000 ? 6 : positions.length > 200 ? 8 : 11);
+    const many = positions.length;
+    const size = this.pixels(many > 1000 ? 4.5 : many > 300 ? 6 : many > 100 ? 8 : 11);
+    const thin = s.cycles.length > 60 ? 0.5 : 1; // hundreds of cycles would hide the model
     const rim = this.theme.background;
     const layers = [
       edges.make(2.6, 1, false),
-      this.hasModel ? paths.make(1.6, 0.4, true) : null, // seen through the model
-      paths.make(2.4, 1, false),
+      this.hasModel ? paths.make(1.6 * thin, 0.4 * thin, true) : null, // seen through the model
+      paths.make(2.4 * thin, 0.5 + 0.5 * thin, false),
       this.hasModel ? makePoints(positions, shades, marks, {size: size * 0.8, opacity: 0.45, rim, through: true}) : null,
       makePoints(positions, shades, marks, {size, opacity: 1, rim, through: false}),
     ];
