@@ -16,7 +16,7 @@ help: ## List the targets
 packages-build:
 	@scripts/install_packages.sh build
 packages-test:
-	@scripts/install_packages.sh build test
+	@scripts/install_packages.sh build test docs
 packages-docs:
 	@scripts/install_packages.sh build docs
 packages-lint:

@@ -161,17 +161,24 @@ private:
         add("points", PartKind::model, kPoint, std::move(mesh));
     }
 
+    /// Hundreds of points and cycles are drawn smaller, so that they do not hide the model.
+    float dot() const {
+        std::size_t count = 0;
+        for (const Orbit& cycle : symmetry_->cycles) count += cycle.points.size();
+        return size(count > 300 ? 0.5F * kDot : count > 100 ? 0.7F * kDot : kDot);
+    }
+    float path() const { return size(symmetry_->cycles.size() > 60 ? 0.4F * kPath : kPath); }
+
     void draw_cycles() {
         for (std::size_t c = 0; c < symmetry_->cycles.size(); ++c) {
             const Orbit& cycle = symmetry_->cycles[c];
             ShadedMesh mesh;
             for (std::size_t i = 0; i < cycle.points.size(); ++i) {
-                add_sphere(position(cycle.points[i]), size(kDot), mesh);
-                if (i > 0)
-                    add_tube(position(cycle.points[i - 1]), position(cycle.points[i]), size(kPath), mesh);
+                add_sphere(position(cycle.points[i]), dot(), mesh);
+                if (i > 0) add_tube(position(cycle.points[i - 1]), position(cycle.points[i]), path(), mesh);
             }
             if (cycle.closed && cycle.points.size() > 2)
-                add_tube(position(cycle.points.back()), position(cycle.points.front()), size(kPath), mesh);
+                add_tube(position(cycle.points.back()), position(cycle.points.front()), path(), mesh);
             add(cycle_name(c, "points"), PartKind::overlay, orbit_colour(c), std::move(mesh));
         }
     }

@@ -28,7 +28,7 @@ using Eigen::Vector3f;
 constexpr int kPanelWidth = 720, kPanelHeight = 560, kCaption = 40;  // pixels
 constexpr int kSamples = 3;                                          // each way in a pixel
 constexpr std::size_t kMostPanels = 4;
-constexpr float kFit = 1.1F;  // half the height of a panel, in radii
+constexpr float kMargin = 0.06F;  // of the panel
 constexpr Colour kGround{0.965F, 0.969F, 0.976F};
 
 // Rays ----------------------------------------------------------------------------------------
@@ -62,12 +62,16 @@ public:
           light_((-0.8F * view_.right + 1.2F * view_.up - 1.6F * view_.forward).normalized()),
           all_(drawing.parts, {PartKind::model, PartKind::overlay}),
           overlay_(drawing.parts, {PartKind::overlay}),
-          sheets_(drawing.parts, {PartKind::sheet}) {}
+          sheets_(drawing.parts, {PartKind::sheet}) {
+        fit(drawing);
+    }
 
-    /// `x`, `y`: in radii from the middle.
-    Colour look(float x, float y) const {
+    /// `column`, `row`: pixels from the upper left corner of the panel.
+    Colour look(float column, float row) const {
         constexpr float kThrough = 0.4F, kSheet = 0.16F;
-        const Vector3f from = radius_ * (x * view_.right + y * view_.up - 4 * view_.forward);
+        const float x = middle_.x() + (column - kPanelWidth / 2.0F) * pixel_;
+        const float y = middle_.y() - (row - kPanelHeight / 2.0F) * pixel_;
+        const Vector3f from = x * view_.right + y * view_.up - 4 * radius_ * view_.forward;
         const auto front = all_.first_hit(from, view_.forward);
         Colour colour = front ? shaded(*front, from) : kGround;
         if (front && front->part->kind == PartKind::model)
@@ -80,6 +84,21 @@ public:
     }
 
 private:
+    /// All that is drawn fills the panel.
+    void fit(const Drawing& drawing) {
+        Eigen::AlignedBox2f box;
+        for (const Part& part : drawing.parts)
+            for (const auto& p : part.mesh.positions) {
+                const Vector3f position(p[0], p[1], p[2]);
+                box.extend(Eigen::Vector2f(position.dot(view_.right), position.dot(view_.up)));
+            }
+        if (box.isEmpty()) return;
+        middle_ = box.center();
+        const float share = 1 - 2 * kMargin;
+        pixel_ = std::max({box.sizes().x() / (share * kPanelWidth), box.sizes().y() / (share * kPanelHeight),
+                           1e-6F * radius_});
+    }
+
     Colour shaded(const Hit& hit, const Vector3f& from) const {
         constexpr float kAmbient = 0.5F, kDirect = 0.55F;
         Colour colour = hit.part->colour;
@@ -92,6 +111,8 @@ private:
     }
 
     float radius_;
+    float pixel_ = 1;  ///< its size in the drawing
+    Eigen::Vector2f middle_ = Eigen::Vector2f::Zero();
     View view_;
     Vector3f light_;
     RayScene all_, overlay_, sheets_;
@@ -116,11 +137,10 @@ bool alike(const Colour& a, const Colour& b) {
 
 /// Two samples where nothing begins or ends, the whole grid of them elsewhere.
 Colour average_of_pixel(const Camera& camera, int column, int row) {
-    constexpr float kPixels = kPanelHeight / (2 * kFit);  // in a radius
     const auto sample = [&](int i, int j) {
         const float x = static_cast<float>(column) + (static_cast<float>(j) + 0.5F) / kSamples;
         const float y = static_cast<float>(row) + (static_cast<float>(i) + 0.5F) / kSamples;
-        return camera.look((x - kPanelWidth / 2.0F) / kPixels, (kPanelHeight / 2.0F - y) / kPixels);
+        return camera.look(x, y);
     };
     const Colour first = sample(0, 0), last = sample(kSamples - 1, kSamples - 1);
     if (alike(first, last)) return mix(first, last, 0.5F);

@@ -85,7 +85,7 @@ export class List {
     h("span", {class: `badge kind-${s.type}`}, symbol(s)),
     h("span", {class: "what"}, h("b", {}, kindWord(s)), h("small", {}, " " + this.words.where(s))),
     h("span", {class: "figures"},
-      h("span", {class: "count"}, this.words.cycles(s)),
+      h("span", {class: "count"}, this.words.cycles(s).replace("points", "pts")),
       h("span", {title: "largest distance of an image from its point"}, `dev. ${this.words.deviation(s.deviation.max)}`),
       h("span", {title: "significance: log10 of how many as good chance would give"},
         `sig. ${s.significance === null ? "?" : number(s.significance, 3)}`)),

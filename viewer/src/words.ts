@@ -67,7 +67,7 @@ export class Words {
     const points = new Set(s.cycles.flatMap((cycle) => cycle.points)).size;
     if (sizes.length === 0) return "";
     if (sizes.every((size) => size === sizes[0])) return `${sizes.length} × ${sizes[0]} points`;
-    return `${sizes.length} cycles of ${points} points`;
+    return `${sizes.length} cycles, ${points} points`;
   }
 
   where(s: Symmetry): string {
