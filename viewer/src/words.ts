@@ -41,7 +41,7 @@ export class Words {
 
   /// A length below the resolution is none.
   deviation(x: number): string {
-    return x <= this.report.options.resolution ? "exact" : this.length(x);
+    return x <= this.report.options.resolution ? "exact" : number(x, 2) + this.unit;
   }
 
   interval(s: Symmetry): string {
@@ -57,8 +57,9 @@ export class Words {
 
   direction(d: number[]): string {
     const names = ["x", "y", "z"];
-    const main = d.findIndex((x) => Math.abs(x) > 1 - 1e-9);
-    return main >= 0 ? names[main] : `(${d.map((x) => number(Math.abs(x) < 1e-9 ? 0 : x, 3)).join(", ")})`;
+    const main = d.findIndex((x) => Math.abs(x) > 1 - 1e-5); // a quarter of a degree
+    if (main >= 0) return (Math.abs(d[main]) > 1 - 1e-9 ? "" : "≈ ") + names[main];
+    return `(${d.map((x) => number(Math.abs(x) < 1e-9 ? 0 : x, 3)).join(", ")})`;
   }
 
   /// How a row counts its cycles: 7 × 7 where all are alike.
