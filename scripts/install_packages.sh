@@ -23,7 +23,7 @@ command -v apt-get >/dev/null ||
 # dpkg-query fails where it does not know a package at all; what it prints of the others is right.
 # A package may bring another one: nodejs from elsewhere than Debian says that it provides npm.
 installed=$(dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null || true)
-provided=$(dpkg-query --show --showformat='${Provides}\n' "${wanted[@]}" 2>/dev/null | tr ', ' '\n\n' || true)
+provided=$(dpkg-query --show --showformat='${Provides}\n' "${wanted[@]}" 2>/dev/null | tr -s ', ' '\n' || true)
 missing=()
 for package in "${wanted[@]}"; do
     grep -qxF "installed $package" <<<"$installed" || grep -qxF "$package" <<<"$provided" || missing+=("$package")

@@ -10,7 +10,7 @@ trap 'rm -rf "$scratch"' EXIT
 for model in examples/*.step; do
     name=$(basename "$model" .step)
     echo "$name"
-    "$program" detect "$model" --quiet --png "docs/images/$name.png" --html "$scratch/$name-page.html" --limit 2000
+    "$program" detect "$model" --quiet --png "docs/images/$name.png" --html "$scratch/$name-page.html"
 done
 shoot() { node tests/browser/shoot.mjs --only desktop-light "$modules" "$scratch" "$scratch/$1-page.html"; }
 for name in flange spiral_stair staggered_connector bracket; do
