@@ -12,11 +12,13 @@ CMAKE_ARGS ?=  # more arguments for CMake, such as -DINSYM_WARNINGS_AS_ERRORS=OF
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-.PHONY: packages-build packages-test packages-lint
+.PHONY: packages-build packages-test packages-docs packages-lint
 packages-build:
 	@scripts/install_packages.sh build
 packages-test:
-	@scripts/install_packages.sh build test
+	@scripts/install_packages.sh build test docs
+packages-docs:
+	@scripts/install_packages.sh build docs
 packages-lint:
 	@scripts/install_packages.sh build lint
 
@@ -30,7 +32,8 @@ build: packages-build ## Build the program build/insym
 .PHONY: demo
 demo: build ## Find the symmetries of examples/flange.step
 	@mkdir -p build/demo
-	build/insym detect examples/flange.step --json build/demo/flange.json | tee build/demo/flange.txt
+	build/insym detect examples/flange.step --json build/demo/flange.json --html build/demo/flange.html \
+	  --png build/demo/flange.png | tee build/demo/flange.txt
 	@echo; echo "Files written:"; ls build/demo/* | sed 's/^/  /'
 
 .PHONY: test
@@ -62,6 +65,20 @@ bench: packages-test ## Time the stages, and the program against its targets
 	@$(call build,release,insym_app insym_bench)
 	build/bench/insym_bench
 	/usr/bin/python3 bench/run_bench.py
+
+.PHONY: page
+page: packages-test ## Build the page of --html anew, after a change in viewer/
+	@tests/browser/modules.py viewer build/viewer
+	@tests/browser/bundle_is_current.py viewer build/viewer --update
+
+.PHONY: pictures
+pictures: build packages-test ## Make the pictures of the documentation anew
+	@tests/browser/modules.py viewer build/viewer
+	@scripts/make_pictures.sh build/insym build/viewer
+
+.PHONY: docs
+docs: packages-docs ## Build the documentation in build/docs
+	@mkdocs build --quiet --strict --site-dir $(CURDIR)/build/docs
 
 .PHONY: format
 format: packages-lint ## Format the C++ sources

@@ -7,6 +7,7 @@
 #include "insym/read_model.hpp"
 #include "insym/read_points.hpp"
 #include "insym/report.hpp"
+#include "insym/view.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -19,7 +20,10 @@
 #include <map>
 #include <new>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "browser.hpp"
 #include "interrupt.hpp"
 #include "options.hpp"
 #include "output.hpp"
@@ -133,30 +137,53 @@ LoadedInput load(const Options& options) {
 // The run -------------------------------------------------------------------------------------
 
 bool wants_table(const Options& options) {
-    return options.json != "-" && !(options.quiet && !options.json.empty());
+    const bool other =
+        !options.json.empty() || !options.html.empty() || !options.png.empty() || !options.gltf.empty();
+    return options.json != "-" && !options.view && !(options.quiet && other);
 }
 
 /// Fails now rather than after the long work.
 void check_outputs(const Options& options) {
     if (wants_table(options)) check_output("-");
-    if (options.json.empty()) return;
-    check_output(options.json);
-    std::error_code ignored;
-    if (options.json != "-" && std::filesystem::equivalent(options.json, options.input, ignored) &&
-        std::filesystem::is_regular_file(options.json, ignored))
-        throw Error(ErrorCode::cannot_write,
-                    options.json + ": is the input itself; name another file for the report");
+    for (const std::string& target : {options.json, options.html, options.png, options.gltf}) {
+        if (target.empty()) continue;
+        check_output(target);
+        std::error_code ignored;
+        if (target != "-" && std::filesystem::equivalent(target, options.input, ignored) &&
+            std::filesystem::is_regular_file(target, ignored))
+            throw Error(ErrorCode::cannot_write,
+                        target + ": is the input itself; name another file for the report");
+    }
 }
 
-/// The report first, as a reader of the table, such as a pager, may take its time; the table also
-/// where the report cannot be saved, so that the work is not lost.
-void write_results(const Options& options, const DetectResult& result, const ReportContext& context) {
+/// The files asked for, with what writes each.
+std::vector<std::pair<std::string, Writer>> files_of(const Options& options, const DetectResult& result,
+                                                     const ReportContext& context,
+                                                     [[maybe_unused]] const Tessellation& model) {
+    std::vector<std::pair<std::string, Writer>> files;
+    const auto add = [&](const std::string& path, const Writer& write) {
+        if (!path.empty()) files.emplace_back(path, write);
+    };
+    add(options.json, [&](std::ostream& out) { write_json(out, result, context); });
+#ifdef INSYM_WITH_VIEW
+    add(options.html, [&](std::ostream& out) { write_page(out, result, context, model, options.shown); });
+    add(options.gltf, [&](std::ostream& out) { write_gltf(out, result, context, model); });
+    add(options.png, [&](std::ostream& out) { write_png(out, result, context, model, options.threads); });
+#endif
+    return files;
+}
+
+/// The files first, as a reader of the table, such as a pager, may take its time; the others and the table
+/// also where one cannot be saved, so that the work is not lost.
+void write_results(const Options& options, const DetectResult& result, const ReportContext& context,
+                   const Tessellation& model) {
     std::exception_ptr failure;
-    try {
-        if (!options.json.empty())
-            write_output(options.json, [&](std::ostream& out) { write_json(out, result, context); });
-    } catch (const Error&) {
-        failure = std::current_exception();
+    for (const auto& [path, write] : files_of(options, result, context, model)) {
+        try {
+            write_output(path, write);
+        } catch (const Error&) {
+            if (!failure) failure = std::current_exception();
+        }
     }
     if (wants_table(options))
         write_output("-", [&](std::ostream& out) {
@@ -191,7 +218,14 @@ DetectResult detect_in(const Input& input, const DetectOptions& options, const R
     }
 }
 
-int run(const Options& options, Clock::time_point start) {
+/// `insym view`: the path of the page, whether or not there is a browser to open it with.
+void show(const Options& options) {
+    write_output("-", [&](std::ostream& out) { out << options.html << '\n'; });
+    if (!open_in_browser(options.html) && !options.quiet)
+        say("no browser could be opened; open the page above with one");
+}
+
+int run(Options options, Clock::time_point start) {
     check_outputs(options);
     RunContext context;
     context.threads = options.threads;
@@ -210,8 +244,11 @@ int run(const Options& options, Clock::time_point start) {
     result.diagnostics.insert(result.diagnostics.begin(), input.diagnostics.begin(), input.diagnostics.end());
     progress.clear();
 
+    if (options.view && options.html.empty()) options.html = temporary_page(options.input);
     write_results(options, result,
-                  {input.path, input.format, input.unit, is_model ? options.points : "points", load_s});
+                  {input.path, input.format, input.unit, is_model ? options.points : "points", load_s},
+                  input.tessellation);
+    if (options.view) show(options);
     if (!options.quiet) {
         for (const Diagnostic& diagnostic : result.diagnostics) say(diagnostic.message);
         if (result.status != RunStatus::complete) say(early_end(result.status));

@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@ constexpr const char* kHelpHint = "; see 'insym detect --help'";
 constexpr const char* kMainFooter = R"(Examples:
   insym detect part.step                      the symmetries of a model, as a table
   insym detect points.xyz --json report.json  the table, and a full report in a file
+  insym view part.step                        the same to look at, in the browser
 
 Exit status: 0 done, also when nothing is found; 1 a defect of the program; 2 wrong usage, or an
 output that cannot be written; 3 the input cannot be read; 4 the input is read but invalid; 5 stopped
@@ -43,6 +45,8 @@ lines, large flat regions.
 area to within --label-tolerance), kind (vertex, edge, face), none.
 
 Output: without --json -, a ranked table on standard output; progress and notes on standard error.
+--html: one file to look at and to pass on; it needs no network and nothing installed. --png: a still picture of
+the first symmetries. --gltf: the model and the cycles of the first symmetry as a scene (.glb) for other programs.
 A file appears under its name only when it is whole. A reader of standard output that closes it
 early (insym ... | head -1) is no error. The first Ctrl-C stops the search and writes what was found
 (status 5), the second ends the program at once.
@@ -51,6 +55,7 @@ Examples:
   insym detect part.step
   insym detect points.xyz --max-tolerance 0.001 --types C,M
   insym detect scan.csv --columns x,y,label --json report.json --quiet
+  insym detect part.step --html part.html --png part.png
   generate | insym detect - --json - | jq .symmetries[0]
 
 Exit status: 0 done, also when nothing is found; 1 a defect of the program; 2 wrong usage; 3 the input
@@ -58,13 +63,15 @@ cannot be read; 4 the input is invalid; 5 stopped early, the report is valid and
 
 /// The options as they were typed; empty: not given.
 struct Typed {
-    std::string input, json, html, columns, time_limit;
+    std::string input, json, html, gltf, png, columns, time_limit, limit;
     std::string points = "representative", labels = "entity", label_tolerance = "0.01", sharp_angle = "30";
     std::string import_memory = "4096", import_time = "300";
     std::string method = "robust", types = "M,I,C2,C,T,Z,S,W";
-    std::string max_tolerance = "auto", resolution = "1e-6", limit = "20", threads = "0";
-    bool quiet = false, all = false, levels = false;
+    std::string max_tolerance = "auto", resolution = "1e-6", threads = "0";
+    bool quiet = false, view = false, all = false, levels = false;
 };
+
+constexpr int kTableLimit = 20, kPageLimit = 5000;
 
 [[noreturn]] void fail(const std::string& sentence) {
     throw Error(ErrorCode::invalid_option, sentence);
@@ -233,7 +240,9 @@ void declare(CLI::App& detect, Typed& typed) {
         detect.add_option(name, value, text)->type_name(takes);
     };
     add("--json", typed.json, "FILE|-", "Write the full report; - is standard output");
-    add("--html", typed.html, "FILE", "Not available yet");
+    add("--html", typed.html, "FILE", "Write an interactive page, one file that works offline");
+    add("--png", typed.png, "FILE", "Write a picture of the first symmetries");
+    add("--gltf", typed.gltf, "FILE", "Write the model with the first symmetry as a scene (binary glTF)");
     add("--method", typed.method, "robust|paper", "Definition of a symmetry (default: robust)");
     add("--types", typed.types, "M,I,C2,...", "Kinds to look for, see below (default: all)");
     add("--points", typed.points, "LIST",
@@ -251,7 +260,7 @@ void declare(CLI::App& detect, Typed& typed) {
         "Largest tolerance, a share of the diameter (default: auto)");
     add("--resolution", typed.resolution, "F",
         "Lengths this near are equal, a share of the diameter (default: 1e-6)");
-    add("--limit", typed.limit, "N", "Symmetries in the table (default: 20; 0: all)");
+    add("--limit", typed.limit, "N", "Symmetries in the table and the page (default: 20 and 5000; 0: all)");
     add("--threads", typed.threads, "N", "Most threads to use (default: 0, all cores)");
     add("--time-limit", typed.time_limit, "S",
         "Stop after so many seconds since the start, with what is found");
@@ -281,7 +290,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
         fail("unknown option " + name + hint_for(name, option_names(where)));
     }
     if (!detect.parsed()) {
-        const std::string hint = did_you_mean(extras.front(), {"detect"});
+        const std::string hint = did_you_mean(extras.front(), {"detect", "view"});
         fail("unknown command '" + extras.front() + "'" +
              (hint.empty() ? "; did you mean insym detect " + extras.front() + "?" : hint));
     }
@@ -307,12 +316,34 @@ void check_values(const CLI::App& detect) {
         }
 }
 
+/// Before the long work: can they be made at all, and does each have a file of its own?
+void check_pictures(Options& options) {
+    [[maybe_unused]] const bool wanted =
+        options.view || !options.html.empty() || !options.gltf.empty() || !options.png.empty();
+#ifndef INSYM_WITH_VIEW
+    if (wanted) fail("this program was built without pages and pictures; build it with INSYM_BUILD_VIEW=ON");
+#endif
+    options.read_mesh.model.tessellate = wanted;
+    std::map<std::string, std::string> outputs;
+    for (const auto& [option, file] : {std::pair("--json", options.json), std::pair("--html", options.html),
+                                       std::pair("--png", options.png), std::pair("--gltf", options.gltf)}) {
+        if (file == "-" && option != std::string_view("--json"))
+            fail(std::string(option) + " takes a file, not standard output");
+        const auto [same, is_new] = outputs.try_emplace(file, option);
+        if (!file.empty() && !is_new) fail(same->second + " and " + option + " name the same file, " + file);
+    }
+}
+
 Options checked(const Typed& typed) {
     Options options;
-    if (!typed.html.empty()) fail("--html is not available yet in this version; use --json for a report");
     options.detect.method = parse_method(typed.method);
     options.input = typed.input;
     options.json = typed.json == "/dev/stdout" ? "-" : typed.json;
+    options.html = typed.html;
+    options.gltf = typed.gltf;
+    options.png = typed.png;
+    options.view = typed.view;
+    check_pictures(options);
     options.detect.types = parse_types(typed.types);
     options.detect.max_tolerance = parse_max_tolerance(typed.max_tolerance);
     options.detect.resolution = parse_resolution(typed.resolution);
@@ -321,7 +352,8 @@ Options checked(const Typed& typed) {
              "; raise it, or lower --resolution");
     if (!typed.columns.empty()) options.read_points.columns = parse_columns(typed.columns);
     constexpr int kMostListed = 1000000000, kMostThreads = 1024;
-    options.limit = parse_count("--limit", typed.limit, kMostListed);
+    options.limit = typed.limit.empty() ? kTableLimit : parse_count("--limit", typed.limit, kMostListed);
+    options.shown = typed.limit.empty() ? kPageLimit : options.limit;
     options.threads = parse_count("--threads", typed.threads, kMostThreads);
     if (!typed.time_limit.empty()) options.time_limit_s = parse_seconds("--time-limit", typed.time_limit);
     parse_points(typed.points, options);
@@ -344,8 +376,11 @@ Command parse_command_line(int argc, const char* const* argv) {
     app.footer(kMainFooter);
     Typed typed;
     CLI::App& detect = *app.add_subcommand("detect", "Find the symmetries of a model or of points");
-    detect.footer(kDetectFooter);
-    declare(detect, typed);
+    CLI::App& view = *app.add_subcommand("view", "Find the symmetries and show them in the browser");
+    for (CLI::App* command : {&detect, &view}) {
+        command->footer(kDetectFooter);
+        declare(*command, typed);
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
@@ -353,10 +388,11 @@ Command parse_command_line(int argc, const char* const* argv) {
     } catch (const CLI::CallForVersion& version) {
         return {{}, std::string(version.what()) + "\n"};
     } catch (const CLI::ParseError& error) {
-        fail_parse(error, app, detect);
+        fail_parse(error, app, view.parsed() ? view : detect);
     }
-    if (!detect.parsed()) fail("no command is given; see 'insym --help'");
-    check_values(detect);
+    typed.view = view.parsed();
+    if (!detect.parsed() && !view.parsed()) fail("no command is given; see 'insym --help'");
+    check_values(view.parsed() ? view : detect);
     return {checked(typed), {}};
 }
 

@@ -12,8 +12,11 @@
 namespace insym::app {
 
 struct Options {
-    std::string input;  ///< a path, or "-" for standard input
-    std::string json;   ///< a path, "-" for standard output, empty for no report
+    std::string input;            ///< a path, or "-" for standard input
+    std::string json;             ///< a path, "-" for standard output, empty for no report
+    std::string html, gltf, png;  ///< paths, empty for none
+    bool view = false;            ///< show the page in the browser
+    int shown = 0;                ///< symmetries in the page and the scene, 0: all
     DetectOptions detect;
     ReadPointsOptions read_points;
     ReadMeshOptions read_mesh;  ///< of models, too

@@ -6,7 +6,7 @@ install(DIRECTORY include/insym ${CMAKE_CURRENT_BINARY_DIR}/include/insym
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 install(EXPORT insym-core NAMESPACE insym:: FILE insym-core.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/insym)
-foreach(component brep mesh)
+foreach(component brep mesh view)
   if(TARGET insym_${component})
     install(TARGETS insym_${component} EXPORT insym-${component})
     install(EXPORT insym-${component} NAMESPACE insym:: FILE insym-${component}.cmake

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages of the groups named (of scripts/packages.txt) that are missing.
-# Usage: scripts/install_packages.sh GROUP...     groups: build test lint
+# Usage: scripts/install_packages.sh GROUP...     groups: build test docs lint
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -21,10 +21,12 @@ command -v apt-get >/dev/null ||
     fail "this is not Debian. Install what scripts/packages.txt names by other means, then run CMake (see CONTRIBUTING.md)."
 
 # dpkg-query fails where it does not know a package at all; what it prints of the others is right.
+# A package may bring another one: nodejs from elsewhere than Debian says that it provides npm.
 installed=$(dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null || true)
+provided=$(dpkg-query --show --showformat='${Provides}\n' "${wanted[@]}" 2>/dev/null | tr -s ', ' '\n' || true)
 missing=()
 for package in "${wanted[@]}"; do
-    grep -qxF "installed $package" <<<"$installed" || missing+=("$package")
+    grep -qxF "installed $package" <<<"$installed" || grep -qxF "$package" <<<"$provided" || missing+=("$package")
 done
 [ ${#missing[@]} -gt 0 ] || exit 0
 

@@ -54,6 +54,19 @@ struct Diagnostic {
     std::string message;
 };
 
+/// The surface of a model or mesh, for pictures only. Lengths are in the input's unit; vertices are finite.
+struct Tessellation {
+    /// The polyline of an edge: indices of vertices in order; a closed one repeats the first.
+    struct Line {
+        std::vector<int> vertices;
+        std::int64_t edge = 0;  ///< an Entity::id; 0: none that gives a point
+    };
+    std::vector<Point> vertices;                ///< of triangles and lines
+    std::vector<std::array<int, 3>> triangles;  ///< indices of vertices, counter-clockwise seen from outside
+    std::vector<std::int64_t> faces;  ///< Entity::id of each triangle's face; 0: none that gives a point
+    std::vector<Line> lines;
+};
+
 /// A point set together with where it came from; what every reader returns.
 struct Input {
     PointSet points;
@@ -61,6 +74,7 @@ struct Input {
     std::string format;                     ///< "xyz", "csv", "step", ...
     std::optional<std::string> unit;        ///< "mm" for models; none for bare points
     std::vector<Diagnostic> diagnostics{};  ///< what the reader passed over; callers add it to the report's
+    Tessellation tessellation{};            ///< where the reader was asked for it; empty for bare points
 };
 
 }  // namespace insym

@@ -15,6 +15,7 @@ struct ReadModelOptions {
     bool edges = true;
     bool faces = true;
     LabelOptions labels{};
+    bool tessellate = false;  ///< also fill Input::tessellation, for pictures
 };
 
 /// Reads the representative points of a STEP (AP203, AP214, AP242), IGES or BREP (text or binary) file,

@@ -17,6 +17,7 @@
 #include "brep/model_shape.hpp"
 #include "brep/occt_session.hpp"
 #include "brep/representative_points.hpp"
+#include "brep/tessellate.hpp"
 
 namespace insym {
 namespace {
@@ -79,6 +80,7 @@ Input read_with_open_cascade(const std::string& path, const Format& format, cons
                     path + ": the " + format.name + " file holds no geometry with " +
                         (options.vertices ? "vertices" : "edges or faces as chosen"));
     input.points.labels = label_entities(input.points.entities, options.labels);
+    if (options.tessellate) input.tessellation = tessellate(model);
     return input;
 }
 

@@ -116,6 +116,28 @@ void visit_members(Pass& pass, Value& d) {
 }
 
 template <class Pass, class Value>
+requires std::is_same_v<std::remove_const_t<Value>, std::array<int, 3>>
+void visit_members(Pass& pass, Value& triangle) {
+    for (auto& vertex : triangle) pass.pass(vertex);
+}
+
+template <class Pass, class Value>
+requires std::is_same_v<std::remove_const_t<Value>, Tessellation::Line>
+void visit_members(Pass& pass, Value& line) {
+    pass.pass(line.vertices);
+    pass.pass(line.edge);
+}
+
+template <class Pass, class Value>
+requires std::is_same_v<std::remove_const_t<Value>, Tessellation>
+void visit_members(Pass& pass, Value& t) {
+    pass.pass(t.vertices);
+    pass.pass(t.triangles);
+    pass.pass(t.faces);
+    pass.pass(t.lines);
+}
+
+template <class Pass, class Value>
 requires std::is_same_v<std::remove_const_t<Value>, Input>
 void visit_members(Pass& pass, Value& input) {
     pass.pass(input.points.dimension);
@@ -126,6 +148,7 @@ void visit_members(Pass& pass, Value& input) {
     pass.pass(input.format);
     pass.pass(input.unit);
     pass.pass(input.diagnostics);
+    pass.pass(input.tessellation);
 }
 
 }  // namespace

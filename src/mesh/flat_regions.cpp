@@ -76,7 +76,7 @@ public:
 private:
     FlatRegion grow(int seed, int number) {
         const Vector3d origin = mesh_.corner(seed, 0), normal = mesh_.area_vector(seed).normalized();
-        FlatRegion region{Vector3d(0, 0, 0), 0};
+        FlatRegion region{Vector3d(0, 0, 0), 0, {}};
         std::vector<int> stack = {seed};
         region_[static_cast<std::size_t>(seed)] = number;
         while (!stack.empty()) {
@@ -84,6 +84,7 @@ private:
             stack.pop_back();
             const double area = mesh_.area_vector(t).norm() / 2;
             region.area += area;
+            region.triangles.push_back(t);
             region.centroid += (mesh_.corner(t, 0) + mesh_.corner(t, 1) + mesh_.corner(t, 2)) / 3 * area;
             for (const int next : neighbours_[static_cast<std::size_t>(t)]) {
                 if (region_[static_cast<std::size_t>(next)] >= 0 || !in_plane(next, origin, normal)) continue;

@@ -10,6 +10,7 @@ namespace insym {
 struct FlatRegion {
     Eigen::Vector3d centroid;
     double area = 0;
+    std::vector<int> triangles;
 };
 
 /// In the order of their first triangles. `flatness`: the largest distance to the plane.

@@ -65,15 +65,45 @@ void append_regions(const std::vector<FlatRegion>& regions, PointSet& points) {
     }
 }
 
-PointSet feature_points(const TriangleMesh& mesh, double diagonal, const ReadMeshOptions& options) {
+struct Features {
+    FeatureLines lines;
+    std::vector<FlatRegion> regions;
+};
+
+Features find_features(const TriangleMesh& mesh, double diagonal, const ReadMeshOptions& options) {
     const std::vector<MeshEdge> edges = find_edges(mesh, options.sharp_angle_deg);
-    const FeatureLines lines = find_feature_lines(mesh, edges, options.sharp_angle_deg);
+    Features features;
+    features.lines = find_feature_lines(mesh, edges, options.sharp_angle_deg);
+    if (options.model.faces) features.regions = find_flat_regions(mesh, edges, kFlatShare * diagonal);
+    return features;
+}
+
+PointSet feature_points(const TriangleMesh& mesh, const Features& features, const ReadMeshOptions& options) {
     PointSet points;
-    if (options.model.vertices) append_corners(mesh, lines.corners, points);
-    if (options.model.edges) append_lines(mesh, lines.lines, points);
-    if (options.model.faces) append_regions(find_flat_regions(mesh, edges, kFlatShare * diagonal), points);
+    if (options.model.vertices) append_corners(mesh, features.lines.corners, points);
+    if (options.model.edges) append_lines(mesh, features.lines.lines, points);
+    if (options.model.faces) append_regions(features.regions, points);
     points.labels = label_entities(points.entities, options.model.labels);
     return points;
+}
+
+Tessellation tessellation_of(const TriangleMesh& mesh, const Features& features) {
+    Tessellation result;
+    result.vertices.reserve(mesh.vertices.size());
+    for (const Eigen::Vector3d& v : mesh.vertices) result.vertices.push_back({v.x(), v.y(), v.z()});
+    result.triangles = mesh.triangles;
+    result.faces.assign(mesh.triangles.size(), 0);
+    std::int64_t id = 0;
+    for (const FlatRegion& region : features.regions) {
+        ++id;
+        for (const int t : region.triangles) result.faces[static_cast<std::size_t>(t)] = id;
+    }
+    id = 0;
+    for (const FeatureLine& line : features.lines.lines) {
+        result.lines.push_back({line.vertices, ++id});
+        if (line.closed) result.lines.back().vertices.push_back(line.vertices.front());
+    }
+    return result;
 }
 
 }  // namespace
@@ -87,11 +117,14 @@ Input read_mesh_file(const std::string& path, const ReadMeshOptions& options) {
     Input input;
     input.path = path;
     input.format = format_of(path);
-    input.points = feature_points(weld(loaded, kWeldShare * diagonal), diagonal, options);
+    const TriangleMesh mesh = weld(loaded, kWeldShare * diagonal);
+    const Features features = find_features(mesh, diagonal, options);
+    input.points = feature_points(mesh, features, options);
     if (input.points.positions.empty())
         throw Error(
             ErrorCode::invalid_input,
             path + ": the mesh has none of the features chosen: no sharp edges and no large flat regions");
+    if (options.model.tessellate) input.tessellation = tessellation_of(mesh, features);
     return input;
 }
 

@@ -309,11 +309,6 @@ def test_unknown_method(box):
     assert_fails(box, USAGE, "did you mean paper?", "detect", "a.xyz", "--method", "papper")
 
 
-def test_not_available_yet(box):
-    box.points("a.xyz", ring(6))
-    assert_fails(box, USAGE, "not available yet", "detect", "a.xyz", "--html", "r.html")
-
-
 def assert_bad_numbers(box, option, values):
     box.points("a.xyz", ring(6))
     for value in values:
@@ -603,6 +598,62 @@ def test_report_into_devices_and_pipes(box):
     assert box.run("detect", path, "--json", "pipe", "--quiet").returncode == DONE
     reader.join(10)
     checked_report(got[0])
+
+
+# Things to look at --------------------------------------------------------------------------------
+
+def need_view(box):
+    if b"built without pages" in box.run("detect", "a.xyz", "--html", "r.html").stderr:
+        raise Skip("the program was built without pages and pictures")
+    (box.folder / "r.html").unlink(missing_ok=True)
+
+
+def test_page_picture_and_scene(box):
+    """That the files are of their kinds; what is in them is looked at in tests/view and tests/browser."""
+    path = box.points("a.xyz", ring(6, 2)).name
+    need_view(box)
+    done = box.run("detect", path, "--html", "p.html", "--gltf", "s.glb", "--png", "i.png", "--json", "r.json", "--quiet")
+    assert done.returncode == DONE and not done.stdout and not done.stderr, done
+    starts = {"p.html": b"<!doctype html>", "s.glb": b"glTF\x02", "i.png": b"\x89PNG", "r.json": b"{"}
+    for name, start in starts.items():
+        assert (box.folder / name).read_bytes().startswith(start), name
+    assert box.files() == ["a.xyz", *sorted(starts)]
+
+
+def test_page_that_cannot_be_written(box):
+    path = box.points("a.xyz", ring(6)).name
+    need_view(box)
+    for option in ("--html", "--png", "--gltf"):
+        assert_fails(box, USAGE, "no/r", "detect", path, option, "no/r")
+        assert_fails(box, USAGE, "is the input itself", "detect", path, option, path)
+        assert_fails(box, USAGE, "takes a file", "detect", path, option, "-")
+        assert_fails(box, USAGE, "the same file", "detect", path, option, "r", "--json", "r")
+
+
+def test_view_opens_the_page(box):
+    path = box.points("<a b>.xyz", ring(6)).name
+    box.points("a.xyz", ring(6))
+    need_view(box)
+    (box.folder / "a.xyz").unlink()
+    opener = box.write("xdg-open", f"#!/bin/sh\nprintf '%s' \"$1\" > '{box.folder}/opened'\n")
+    opener.chmod(0o755)
+    environment = {**os.environ, "PATH": str(box.folder), "TMPDIR": str(box.folder)}
+    done = box.run("view", path, env=environment)
+    assert done.returncode == DONE and not done.stderr, done
+    page = Path(done.stdout.decode().rstrip("\n"))
+    assert page.parent.parent == box.folder and page.name == "<a b>.html" and page.parent.stat().st_mode & 0o777 == 0o700
+    for _ in range(100):
+        if (box.folder / "opened").exists():
+            break
+        time.sleep(0.1)
+    assert (box.folder / "opened").read_text() == str(page) and page.read_bytes().startswith(b"<!doctype html>")
+    # No browser: the page is there all the same, and the path is printed.
+    opener.unlink()
+    done = box.run("view", path, env=environment)
+    assert done.returncode == DONE and "no browser" in one_sentence(done.stderr), done
+    assert Path(done.stdout.decode().rstrip("\n")).exists()
+    before = box.files()
+    assert box.run("view", "no.xyz", env=environment).returncode == CANNOT_READ and box.files() == before
 
 
 def run_with_closed_reader(box, *args):

@@ -37,6 +37,8 @@ Input sample() {
     input.points.positions = {{1, 2, 3}, {-1e300, 0.1, 5e-324}};
     input.points.labels = {3, -4};
     input.points.entities = {entity, {}};
+    input.tessellation = {
+        {{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}, {{0, 1, 2}}, {7}, {{{0, 1, 0}, 5}, {{2, 1}, 0}}};
     return input;
 }
 
@@ -74,6 +76,12 @@ TEST(GuardedRead, TheResultComesBackWhole) {
     EXPECT_EQ(a.length, b.length);
     EXPECT_EQ(a.area, b.area);
     EXPECT_EQ(a.part, b.part);
+    EXPECT_EQ(input.tessellation.vertices, expected.tessellation.vertices);
+    EXPECT_EQ(input.tessellation.triangles, expected.tessellation.triangles);
+    EXPECT_EQ(input.tessellation.faces, expected.tessellation.faces);
+    ASSERT_EQ(input.tessellation.lines.size(), 2U);
+    EXPECT_EQ(input.tessellation.lines[0].vertices, expected.tessellation.lines[0].vertices);
+    EXPECT_EQ(input.tessellation.lines[0].edge, 5);
 }
 
 // More than a pipe holds at once.
