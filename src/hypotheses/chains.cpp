@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -237,8 +238,10 @@ public:
             for (int mate = a + 1; mate < n; ++mate)
                 for (int k = 0; k < picks; ++k) {
                     const int b =
-                        picks == n ? k
-                                   : static_cast<int>((static_cast<long>(k) * n + a * 7 + mate) / picks) % n;
+                        picks == n
+                            ? k
+                            : static_cast<int>((std::int64_t{k} * n + std::int64_t{7} * a + mate) / picks) %
+                                  n;
                     if (b != a && b != mate) partner(a, mate, b);
                 }
         return best_.sorted();

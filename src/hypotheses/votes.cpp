@@ -26,7 +26,7 @@ constexpr int kFewVotes = 3;  // chance does as well with less
 /// point far outside (which no plane through the set comes near).
 Vector3d ballot_place(SymmetryType type, const Vector3d& a, const Vector3d& b, const Vector3d& outside) {
     if (type == SymmetryType::translation) return (b - a).dot(kAskew) < 0 ? Vector3d(a - b) : Vector3d(b - a);
-    const Vector3d middle = (a + b) / 2;
+    Vector3d middle = (a + b) / 2;
     if (type == SymmetryType::inversion || type == SymmetryType::half_turn) return middle;
     const Vector3d normal = (b - a).normalized();
     return outside - 2 * normal * normal.dot(outside - middle);
@@ -130,7 +130,12 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, double reach
         ballots.push_back({ballot_place(type, cloud[i], cloud[j], far), i, j});
 
     std::vector<double> sizes;
-    for (double size = 2 * reach; size > 8 * cloud.scene().resolution; size /= 5) sizes.push_back(size);
+    const double finest = 8 * cloud.scene().resolution;
+    double coarse = 2 * reach;
+    while (coarse > finest) {
+        sizes.push_back(coarse);
+        coarse /= 5;
+    }
     sizes.push_back(8 * cloud.scene().resolution);
 
     struct Ranked {

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 #include "isometry/fit.hpp"
@@ -28,6 +29,7 @@ std::vector<int> samples(const PointScene& scene) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (int i = 0; i < n; ++i) middle += to_vector(scene.position(i)) / n;
     std::vector<double> radius;
+    radius.reserve(static_cast<std::size_t>(n));
     for (int i = 0; i < n; ++i) radius.push_back((to_vector(scene.position(i)) - middle).squaredNorm());
     std::vector<int> order(static_cast<std::size_t>(n));
     std::iota(order.begin(), order.end(), 0);
@@ -36,8 +38,9 @@ std::vector<int> samples(const PointScene& scene) {
         return radius[static_cast<std::size_t>(a)] < radius[static_cast<std::size_t>(b)];
     });
     std::vector<int> chosen;
+    chosen.reserve(kMostSamples);
     for (int k = 0; k < kMostSamples; ++k)
-        chosen.push_back(order[static_cast<std::size_t>((static_cast<long>(k) * n + n / 2) / kMostSamples)]);
+        chosen.push_back(order[static_cast<std::size_t>((std::int64_t{k} * n + n / 2) / kMostSamples)]);
     return chosen;
 }
 

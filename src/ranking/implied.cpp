@@ -48,8 +48,9 @@ public:
         const auto n = static_cast<double>(scene.size());
         for (int i = 0; i < scene.size(); ++i) middle_ += to_vector(scene.position(i)) / n;
         std::vector<Point> positions;
+        positions.reserve(scene.points.size());
         for (int i = 0; i < scene.size(); ++i) {
-            places_.push_back(to_vector(scene.position(i)) - middle_);
+            places_.emplace_back(to_vector(scene.position(i)) - middle_);
             positions.push_back(to_point(places_.back()));
         }
         grid_ = PointGrid(positions);

@@ -169,9 +169,10 @@ public:
         const auto n = static_cast<double>(scene.size());
         for (int i = 0; i < scene.size(); ++i) middle_ += to_vector(scene.position(i)) / n;
         std::vector<Point> positions;
+        positions.reserve(scene.points.size());
         Matrix3d spread = Matrix3d::Zero();
         for (int i = 0; i < scene.size(); ++i) {
-            places_.push_back(to_vector(scene.position(i)) - middle_);
+            places_.emplace_back(to_vector(scene.position(i)) - middle_);
             positions.push_back(to_point(places_.back()));
             spread += places_.back() * places_.back().transpose();
             radius_ = std::max(radius_, places_.back().norm());
@@ -270,6 +271,7 @@ private:
     void drop_looser() {
         constexpr double kJump = 8;
         std::vector<double> slacks;
+        slacks.reserve(candidates_.size());
         for (const Candidate& c : candidates_) slacks.push_back(c.slack);
         std::sort(slacks.begin(), slacks.end());
         for (std::size_t k = 1; k < slacks.size(); ++k)

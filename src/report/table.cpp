@@ -513,9 +513,11 @@ void write_levels(std::ostream& out, const DetectResult& result, const ReportCon
     for (std::size_t k = 0; k < changes.size();) {
         const double from = changes[k].tolerance;
         std::vector<int> begin, end;
-        for (double last = from; k < changes.size() && changes[k].tolerance <= last * kTogether; ++k) {
+        double last = from;
+        while (k < changes.size() && changes[k].tolerance <= last * kTogether) {
             last = changes[k].tolerance;
             (changes[k].begins ? begin : end).push_back(changes[k].id);
+            ++k;
         }
         holding += begin.size();
         holding -= end.size();

@@ -231,6 +231,7 @@ private:
     double worst_after_deadline() const {
         constexpr std::size_t kBest = 500;
         std::vector<double> all;
+        all.reserve(collection_.supports().size());
         for (const Support& s : collection_.supports()) all.push_back(s.significance);
         if (all.size() <= kBest) return std::numeric_limits<double>::infinity();
         const auto last = all.begin() + kBest;
@@ -269,8 +270,9 @@ private:
     /// How near the image of a point comes to a point that it does not belong to.
     double turns_ambiguous(const Pattern& p) const {
         double best = std::numeric_limits<double>::infinity();
-        for (const auto& [from, to] : p.support.links) {
-            const Vector3d image = p.support.map(cloud_[from]);
+        for (const auto& link : p.support.links) {
+            const int to = link.second;
+            const Vector3d image = p.support.map(cloud_[link.first]);
             const double reach = std::min(best, 2 * cloud_.radius());
             cloud_.grid().visit_ball(to_point(image), reach, [&](int j, double square) {
                 if (j != to && cloud_.label(j) == cloud_.label(to)) best = std::min(best, std::sqrt(square));

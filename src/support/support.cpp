@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -126,8 +127,11 @@ std::vector<std::pair<SymmetryType, RigidMap>> simpler_kinds(SymmetryType type, 
 
 Gatherer::Gatherer(const Cloud& cloud, const Significance& significance, double reach)
     : cloud_(cloud), significance_(significance) {
-    for (double level = cloud.scene().resolution; level < reach * (1 - 1e-9); level *= std::numbers::sqrt2)
+    double level = cloud.scene().resolution;
+    while (level < reach * (1 - 1e-9)) {
         levels_.push_back(level);
+        level *= std::numbers::sqrt2;
+    }
     levels_.push_back(std::max(reach, cloud.scene().resolution));
     gap_ = cloud.nearest_gap();
 }
@@ -270,8 +274,10 @@ void Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map) const {
     if (!(h.radius > 0) || h.type == SymmetryType::translation || h.type == SymmetryType::inversion) return;
     Linked linked;
     const double far = cloud_.radius() + h.center.norm();
-    for (double radius = 2 * h.radius; radius < far; radius *= 2) {
+    double radius = 2 * h.radius;
+    while (radius < far) {
         link(h.type, map, reach, &h.center, radius, linked);
+        radius *= 2;
         if (linked.count < least_links(h.type)) continue;
         const Judged judged = judge(h.type, linked, reach);
         map = refit(h.type, links_within(linked, judged.tolerance), map);
@@ -297,8 +303,7 @@ bool Gatherer::promising(const Hypothesis& h, double reach) const {
     for (int i = 0; i < n; ++i)
         if ((cloud_[i] - h.center).squaredNorm() <= near && linked(i)) return true;
     int hits = 0;
-    for (int k = 0; k < kSample; ++k)
-        hits += linked(static_cast<int>(static_cast<long>(k) * n / kSample)) ? 1 : 0;
+    for (int k = 0; k < kSample; ++k) hits += linked(static_cast<int>(std::int64_t{k} * n / kSample)) ? 1 : 0;
     return hits > 2 * kSample * significance_.background().chance(reach);
 }
 
