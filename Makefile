@@ -54,6 +54,12 @@ sanitize-asan sanitize-tsan: sanitize-%: packages-test
 	@$(call build,$*,all)
 	@ctest --preset $* --parallel $(JOBS)
 
+.PHONY: sanitize-memory
+sanitize-memory: packages-test ## Run tests of the core with the address and undefined-behaviour sanitizers: a part of sanitize-asan, for CI
+	@$(call build,asan,insym_unit_tests insym_property_errors insym_property_groups insym_property_robust)
+	build-asan/tests/unit/insym_unit_tests
+	@for name in errors groups robust; do build-asan/tests/property/insym_property_$$name || exit 1; done
+
 .PHONY: sanitize-threads
 sanitize-threads: packages-test ## Run the tests of what runs in parallel with the thread sanitizer: a part of sanitize-tsan, for CI
 	@$(call build,tsan,insym_property_run insym_property_pairs)
