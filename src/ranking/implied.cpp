@@ -147,6 +147,13 @@ double slack_of(const Item& a, const Item& b, const Item& c) {
     return 2 * (a.slack + b.slack + c.slack);
 }
 
+/// The same for a power of a generator: the errors of its steps add up. `index` counts forward and back in
+/// turn.
+double slack_of_power(const Item& a, const Item& generator, std::size_t index) {
+    const std::size_t steps = index / 2;
+    return 2 * a.slack + (2 + 0.5 * static_cast<double>(steps)) * generator.slack;
+}
+
 }  // namespace
 
 void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetries, RunMonitor& monitor) {
@@ -176,10 +183,8 @@ void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetri
                 continue;
             // A power of a chance is no intent.
             if (own > kShare * symmetries[k].significance || !all.carries(all[g], all[k])) continue;
-            double slack = 2 * all[k].slack;
             for (std::size_t j = 0; j < powers.size(); ++j) {
-                slack = 2 * all[k].slack + (2 + 0.5 * static_cast<double>(j / 2)) * all[g].slack;
-                if (!all.equal(all[k], powers[j], slack)) continue;
+                if (!all.equal(all[k], powers[j], slack_of_power(all[k], all[g], j))) continue;
                 best = symmetries[k].significance * (1 + 1e-9);
                 break;
             }
@@ -191,7 +196,7 @@ void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetri
 void mark_implied(const PointScene& scene, std::vector<Symmetry>& symmetries, RunMonitor& monitor) {
     if (monitor.should_stop()) return;
     constexpr std::size_t kMostGenerators = 24;
-    constexpr int kMostWordPowers = 12;
+    constexpr std::size_t kMostWords = 24;  // powers, forward and back
     const Implications all(scene, symmetries);
     std::vector<std::size_t> generators;
     std::vector<std::vector<RigidMap>> powers;
@@ -203,16 +208,13 @@ void mark_implied(const PointScene& scene, std::vector<Symmetry>& symmetries, Ru
         const auto found = [&]() -> std::vector<std::size_t> {
             for (const std::size_t g : able)
                 for (std::size_t j = 0; j < powers[g].size(); ++j)
-                    if (all.equal(
-                            a, powers[g][j],
-                            2 * a.slack + (2 + 0.5 * static_cast<double>(j / 2)) * all[generators[g]].slack))
-                        return {g};
+                    if (all.equal(a, powers[g][j], slack_of_power(a, all[generators[g]], j))) return {g};
             for (const std::size_t g : able)
                 for (const std::size_t h : able) {
                     if (g == h) continue;
                     const double slack = slack_of(a, all[generators[g]], all[generators[h]]);
-                    const std::size_t m = std::min<std::size_t>(powers[g].size(), 2 * kMostWordPowers);
-                    const std::size_t n = std::min<std::size_t>(powers[h].size(), 2 * kMostWordPowers);
+                    const std::size_t m = std::min<std::size_t>(powers[g].size(), kMostWords);
+                    const std::size_t n = std::min<std::size_t>(powers[h].size(), kMostWords);
                     for (std::size_t i = 0; i < m; ++i)
                         for (std::size_t j = 0; j < n; ++j)
                             if (all.equal(a, product(powers[g][i], powers[h][j]), slack)) return {g, h};

@@ -20,6 +20,7 @@ DetectResult shown_part(const DetectResult& result, int limit) {
                                   : std::min(result.symmetries.size(), static_cast<std::size_t>(limit));
     part.symmetries.assign(result.symmetries.begin(),
                            result.symmetries.begin() + static_cast<std::ptrdiff_t>(count));
+    part.group = result.group;
     part.stats = result.stats;
     part.timing = result.timing;
     part.diagnostics = result.diagnostics;

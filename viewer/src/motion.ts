@@ -29,7 +29,8 @@ function elementsOf(s: Symmetry, frame: Frame): Elements {
   };
 }
 
-function place(e: Elements, t: number, sign: number): Matrix4 {
+/// `turn`, `along`: 1 or -1, the senses of the turn and of the step.
+function place(e: Elements, t: number, turn: number, along: number): Matrix4 {
   const matrix = new Matrix4().makeTranslation(-e.centre.x, -e.centre.y, -e.centre.z);
   if (e.normal) {
     const {x, y, z} = e.normal;
@@ -43,8 +44,8 @@ function place(e: Elements, t: number, sign: number): Matrix4 {
   if (e.inverts) matrix.premultiply(new Matrix4().makeScale(1 - 2 * t, 1 - 2 * t, 1 - 2 * t));
   if (e.axis)
     matrix.premultiply(new Matrix4().makeRotationFromQuaternion(
-      new Quaternion().setFromAxisAngle(e.axis, sign * e.angle * t)));
-  const to = e.centre.clone().addScaledVector(e.step, t);
+      new Quaternion().setFromAxisAngle(e.axis, turn * e.angle * t)));
+  const to = e.centre.clone().addScaledVector(e.step, along * t);
   return matrix.premultiply(new Matrix4().makeTranslation(to.x, to.y, to.z));
 }
 
@@ -56,7 +57,10 @@ function distance(a: Matrix4, b: Matrix4): number {
 export function motionOf(s: Symmetry, frame: Frame): {motion: Motion; error: number; sign: number} {
   const elements = elementsOf(s, frame);
   const end = frame.matrix(s.isometry.matrix);
-  const errors = [1, -1].map((sign) => distance(place(elements, 1, sign), end));
-  const sign = errors[0] <= errors[1] ? 1 : -1;
-  return {motion: (t) => place(elements, t, sign), error: Math.min(...errors), sign};
+  // The words do not say to which side a step along an axis goes (a left-handed thread): the matrix does.
+  const senses = [[1, 1], [-1, 1], [1, -1], [-1, -1]];
+  const errors = senses.map(([turn, along]) => distance(place(elements, 1, turn, along), end));
+  const error = Math.min(...errors);
+  const [turn, along] = senses[errors.indexOf(error)];
+  return {motion: (t) => place(elements, t, turn, along), error, sign: turn};
 }
