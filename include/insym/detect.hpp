@@ -75,8 +75,8 @@ struct Symmetry {
 struct PointGroup {
     std::string schoenflies;      ///< "C1", "D3h", "Oh", "Cinfv"; in 2D "C4" or, with mirrors, "D4"
     std::string hermann_mauguin;  ///< "1", "-6m2", "m-3m", "inf m"; a leading minus is the bar
-    Point center{};               ///< what all elements leave in place; the centroid with the empty slots filled
-    int empty_slots = 0;          ///< points that the set lacks for the group to be complete
+    Point center{};       ///< what all elements leave in place; the centroid with the empty slots filled
+    int empty_slots = 0;  ///< points that the set lacks for the group to be complete
 };
 
 enum class RunStatus { complete, time_limit, cancelled, result_limit };

@@ -21,8 +21,8 @@ struct ReportContext {
 /// Writes the report; all lengths in the input's unit, angles in degrees. Linear in its size.
 INSYM_EXPORT void write_json(std::ostream& out, const DetectResult& result, const ReportContext& context);
 
-/// Writes a ranked table of the first `limit` symmetries (0: all) with units, for people. Those that follow from
-/// others (implied_by) are only counted unless `all` is set.
+/// Writes a ranked table of the first `limit` symmetries (0: all) with units, for people. Those that follow
+/// from others (implied_by) are only counted unless `all` is set.
 INSYM_EXPORT void write_table(std::ostream& out, const DetectResult& result, const ReportContext& context,
                               int limit, bool all = false);
 
