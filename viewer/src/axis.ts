@@ -82,8 +82,9 @@ export class ToleranceAxis {
     const changes = new Array<number>(width + 1).fill(0);
     for (const s of this.report.symmetries) {
       const [from, to] = this.bar(s);
-      changes[Math.min(width - 1, Math.floor(from * width))] += 1;
-      changes[Math.max(Math.floor(from * width) + 1, Math.ceil(to * width))] -= 1;
+      const first = Math.min(width - 1, Math.floor(from * width));
+      changes[first] += 1;
+      changes[Math.max(first + 1, Math.ceil(to * width))] -= 1;
     }
     const most = changes.reduce(([sum, top], x) => [sum + x, Math.max(top, sum + x)], [0, 0])[1];
     const context = this.chart.getContext("2d") as CanvasRenderingContext2D;

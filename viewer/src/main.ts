@@ -68,7 +68,7 @@ function facts(): string {
     `diameter ${words.length(input.diameter)}`,
     shown < all ? `the first ${shown} of ${all} symmetries` : `${all} symmetries`,
     `tolerance up to ${words.length(options.max_tolerance)}`,
-    report.group ? `point group ${report.group.schoenflies}${report.group.empty_slots > 0 ? `, ${report.group.empty_slots} empty slots` : ""}` : "",
+    report.group && report.group.schoenflies !== "C1" ? `point group ${report.group.schoenflies}${report.group.empty_slots > 0 ? `, ${report.group.empty_slots} empty slots` : ""}` : "",
     status === "complete" ? "" : `stopped early: ${status.replace("_", " ")}`,
     `${generator.name} ${generator.version}`,
   ].filter((text) => text !== "").join(" · ");
