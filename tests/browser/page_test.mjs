@@ -227,6 +227,32 @@ async function folding(page) {
   await close(tab);
 }
 
+/// The chart over the tolerance axis, also where a symmetry begins to hold only at the axis' end.
+async function chart(page) {
+  const path = withReport(page, (report) => {
+    report.symmetries[0].tolerance = {min: 10 * report.input.diameter, max: null};
+    return report;
+  });
+  const tab = await open(path);
+  const drawn = await tab.$eval(".chart", (canvas) => {
+    const {data} = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    return data.filter((x, i) => i % 4 === 3 && x > 0).length;
+  });
+  assert(drawn > 100, `the chart has ${drawn} pixels`);
+  await close(tab);
+}
+
+/// The flange lacks one of eight holes (examples/README.md): its faces and edges are drawn where they would be.
+async function ghosts() {
+  const tab = await open(makePage(join(sources, "examples/flange.step"), "--types", "C"));
+  const slots = await tab.evaluate(() => {
+    const first = window.insym.report.symmetries[0];
+    return {order: first.order, missing: first.missing.length, ...window.insym.stage.emptySlots()};
+  });
+  assert.deepEqual(slots, {order: 8, missing: 7, ghosts: 7, rings: 0});
+  await close(tab);
+}
+
 async function phone(page) {
   const tab = await open(page, {width: 380, height: 760});
   assert(await tab.isVisible(".row") && !(await tab.isVisible("#detail dl")));
@@ -234,6 +260,8 @@ async function phone(page) {
   assert(await tab.isVisible("#detail dl") && !(await tab.isVisible(".row")));
   const wide = await tab.evaluate(() => document.documentElement.scrollWidth);
   assert(wide <= 380, `the page is ${wide} wide`);
+  const [canvas, controls] = await Promise.all(["#canvas", ".controls"].map(async (id) => (await tab.$(id)).boundingBox()));
+  assert(canvas.y + canvas.height <= controls.y, "the controls hide a part of the model");
   await close(tab);
 }
 
@@ -343,7 +371,7 @@ async function pointsInThePlane() {
 try {
   // Of method paper, where nothing is folded: the tests fold what they want folded.
   const flange = makePage(join(sources, "examples/flange.step"), "--method", "paper");
-  for (const test of [opensEveryExample, filters, keyboard, clickOnAPoint, folding, phone, large, namesAreText, pointsInThePlane]) {
+  for (const test of [opensEveryExample, filters, keyboard, clickOnAPoint, folding, chart, ghosts, phone, large, namesAreText, pointsInThePlane]) {
     if (wanted.length > 0 && !wanted.includes(test.name)) continue;
     const start = performance.now();
     await test(flange);

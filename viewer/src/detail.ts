@@ -1,11 +1,12 @@
 // Everything about the chosen symmetry and the chosen point.
 import {copy, h} from "./dom";
 import {orbitColour} from "./palette";
-import type {Report, Symmetry} from "./report";
+import {moves, type Report, type Symmetry, turns} from "./report";
 import {kindWord, number, symbol, type Words} from "./words";
 
 const kMostCycles = 100;
 const kMostPoints = 60; // of a cycle
+const kMostLinks = 12; // to other symmetries
 
 export interface DetailActions {
   select(id: number): void;
@@ -52,18 +53,18 @@ export class Detail {
   private symmetry(s: Symmetry, implies: number[], dark: boolean): HTMLElement {
     const {axis, plane, center, angle_deg, step, matrix} = s.isometry;
     const links = (ids: number[]) => h("span", {class: "links"},
-      ...ids.slice(0, 40).map((id) => button(`#${id}`, () => this.actions.select(id))), ids.length > 40 ? "…" : "");
-    const turns = s.type === "C" || s.type === "S" || s.type === "W";
+      ...ids.slice(0, kMostLinks).map((id) => button(`#${id}`, () => this.actions.select(id))),
+      ids.length > kMostLinks ? `… ${ids.length - kMostLinks} more` : "");
     const w = this.words;
     return h("section", {},
       h("h2", {}, h("span", {class: `badge kind-${s.type}`}, symbol(s)),
         ` ${kindWord(s)}${s.order && s.order > 2 ? ` of order ${s.order}` : ""} `, h("small", {}, `#${s.id}`)),
       table([
-        ["turn", turns ? `${number(angle_deg, 6)}°` : null],
-        ["step", s.type === "T" || s.type === "Z" || s.type === "W" ? w.length(step) : null],
+        ["turn", turns(s) ? `${number(angle_deg, 6)}°` : null],
+        ["step", moves(s) ? w.length(step) : null],
         ["axis", axis && s.type !== "T" ? `${w.direction(axis.direction)} through ${w.place(axis.point)}` : null],
         ["along", axis && s.type === "T" ? w.direction(axis.direction) : null],
-        ["plane", plane ? `⊥ ${w.direction(plane.normal)} through ${w.place(plane.point)}` : null],
+        [w.plane, plane ? `⊥ ${w.direction(plane.normal)} through ${w.place(plane.point)}` : null],
         ["centre", center ? w.place(center) : null],
         ["tolerance", w.interval(s)],
         ["deviation", s.deviation.max <= this.report.options.resolution ? "exact" : `${w.length(s.deviation.max)} at most, ${w.length(s.deviation.rms)} rms`],

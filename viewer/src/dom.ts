@@ -14,6 +14,19 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
+/// What calls `draw` with the next frame, once however often it is asked.
+export function onNextFrame(draw: () => void): () => void {
+  let asked = false;
+  return () => {
+    if (asked) return;
+    asked = true;
+    requestAnimationFrame(() => {
+      asked = false;
+      draw();
+    });
+  };
+}
+
 export async function copy(text: string, button: HTMLElement): Promise<void> {
   try {
     await navigator.clipboard.writeText(text);

@@ -4,7 +4,7 @@ import {
   SphereGeometry, Vector3,
 } from "three";
 import {LineSet} from "./lines";
-import type {Frame, Symmetry} from "./report";
+import {type Frame, moves, type Symmetry, turns} from "./report";
 
 const kReach = 1.18; // beyond the model, which lies in a ball of radius 1
 
@@ -50,8 +50,6 @@ export function drawElements(s: Symmetry, frame: Frame, colour: Color, sign: num
   const {axis, plane, center, angle_deg, step} = s.isometry;
   const solid = new LineSet();
   const dashed = new LineSet();
-  const moves = s.type === "T" || s.type === "Z" || s.type === "W";
-  const turns = s.type === "C" || s.type === "S" || s.type === "W";
 
   if (plane) {
     const n = frame.direction(plane.normal).normalize();
@@ -69,19 +67,19 @@ export function drawElements(s: Symmetry, frame: Frame, colour: Color, sign: num
       solid.path(corners, true, colour);
     }
   }
-  if (axis && turns) {
+  if (axis && turns(s)) {
     const d = frame.direction(axis.direction).normalize();
     const foot = footOnLine(frame.point(axis.point), d);
     dashed.add(foot.clone().addScaledVector(d, -kReach), foot.clone().addScaledVector(d, kReach), colour);
     group.add(arrowHead(foot.clone().addScaledVector(d, kReach), d, colour));
   }
-  if (turns && (axis || center)) {
+  if (turns(s) && (axis || center)) {
     const d = axis ? frame.direction(axis.direction).normalize() : new Vector3(0, 0, 1);
     const middle = center ? frame.point(center) : footOnLine(frame.point(axis!.point), d);
     if (axis && !flat && !center) middle.addScaledVector(d, kReach * 0.86);
     drawArc(middle, d, (sign * angle_deg * Math.PI) / 180, flat ? 0.16 : 0.2, solid, group, colour);
   }
-  if (moves && axis) {
+  if (moves(s) && axis) {
     const d = frame.direction(axis.direction).normalize();
     const p = s.cycles.length > 0 && s.type === "T" ? new Vector3() : footOnLine(frame.point(axis.point), d);
     const tip = p.clone().addScaledVector(d, step * frame.scale);

@@ -1,7 +1,7 @@
 // The ranked list. Only the rows in view exist, so that thousands cost nothing.
 import type {ToleranceAxis} from "./axis";
 import type {Row} from "./choose";
-import {h} from "./dom";
+import {h, onNextFrame} from "./dom";
 import {kindWord, number, symbol, type Words} from "./words";
 
 const kRowHeight = 58; // as in style.css
@@ -11,7 +11,7 @@ export class List {
   private readonly spacer = h("div", {class: "spacer"});
   private rows: Row[] = [];
   private selected: number | null = null;
-  private asked = false;
+  private readonly ask = onNextFrame(() => this.draw());
 
   constructor(
     private readonly axis: ToleranceAxis, private readonly words: Words,
@@ -35,15 +35,6 @@ export class List {
     if (i * kRowHeight < scrollTop) this.element.scrollTop = i * kRowHeight;
     else if ((i + 1) * kRowHeight > scrollTop + clientHeight) this.element.scrollTop = (i + 1) * kRowHeight - clientHeight;
     this.draw();
-  }
-
-  private ask(): void {
-    if (this.asked) return;
-    this.asked = true;
-    requestAnimationFrame(() => {
-      this.asked = false;
-      this.draw();
-    });
   }
 
   private draw(): void {
@@ -83,12 +74,12 @@ export class List {
     },
     h("span", {class: "rank"}, String(s.id)),
     h("span", {class: `badge kind-${s.type}`}, symbol(s)),
-    h("span", {class: "what"}, h("b", {}, kindWord(s)), h("small", {}, " " + this.words.where(s))),
+    h("span", {class: "what", title: this.words.where(s)}, h("b", {}, kindWord(s)), h("small", {}, " " + this.words.where(s))),
     h("span", {class: "figures"},
       h("span", {class: "count"}, this.words.cycles(s).replace("points", "pts")),
-      h("span", {title: "largest distance of an image from its point"}, `dev. ${this.words.deviation(s.deviation.max)}`),
       h("span", {title: "significance: log10 of how many as good chance would give"},
-        `sig. ${s.significance === null ? "?" : number(s.significance, 3)}`)),
+        `sig. ${s.significance === null ? "?" : number(s.significance, 3)}`),
+      h("span", {title: "largest distance of an image from its point"}, `dev. ${this.words.deviation(s.deviation.max)}`)),
     fold || h("span", {class: "fold"}),
     track);
     item.style.top = `${i * kRowHeight}px`;

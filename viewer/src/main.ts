@@ -8,7 +8,7 @@ import {Player} from "./player";
 import {type Letter, readModel, readReport, type Symmetry} from "./report";
 import {Stage} from "./stage";
 import "./style.css";
-import {kKindWords, kLetters, Words} from "./words";
+import {counted, kKindWords, kLetters, Words} from "./words";
 
 const kKeys: [string, string][] = [
   ["↑ ↓", "previous, next symmetry"], ["Home End", "first, last"], ["→ ←", "unfold, fold what follows from it"],
@@ -56,7 +56,7 @@ const count = h("p", {class: "found", "aria-live": "polite"});
 const help = h("dialog", {class: "help"}, h("h2", {}, "Keys"),
   h("dl", {}, ...kKeys.flatMap(([key, what]) => [h("dt", {}, key), h("dd", {}, what)])),
   h("p", {}, "Drag turns, the wheel zooms, the right button moves. A click on a point or face lists its symmetries."),
-  h("p", {class: "legend"}, "Discs: points of the cycles. Rings: fixed points. Broken rings: empty slots of the pattern."),
+  h("p", {class: "legend"}, "Discs: points of the cycles. Rings: fixed points. Broken rings and ghosts: empty slots of the pattern."),
   h("form", {method: "dialog"}, h("button", {}, "close")));
 
 function facts(): string {
@@ -64,11 +64,11 @@ function facts(): string {
   const shown = report.symmetries.length;
   const all = report.stats.symmetries;
   return [
-    `${report.points.length} points (${options.points}) in ${input.dimension}D`,
+    `${report.points.length} points${report.entities ? ` (${options.points})` : ""} in ${input.dimension}D`,
     `diameter ${words.length(input.diameter)}`,
     shown < all ? `the first ${shown} of ${all} symmetries` : `${all} symmetries`,
     `tolerance up to ${words.length(options.max_tolerance)}`,
-    report.group && report.group.schoenflies !== "C1" ? `point group ${report.group.schoenflies}${report.group.empty_slots > 0 ? `, ${report.group.empty_slots} empty slots` : ""}` : "",
+    report.group && report.group.schoenflies !== "C1" ? `point group ${report.group.schoenflies}${report.group.empty_slots > 0 ? ` but for ${counted(report.group.empty_slots, "empty slot")}` : ""}` : "",
     status === "complete" ? "" : `stopped early: ${status.replace("_", " ")}`,
     `${generator.name} ${generator.version}`,
   ].filter((text) => text !== "").join(" · ");
@@ -93,11 +93,11 @@ function build(): void {
     kinds.append(chip);
   }
   element("list").append(h("div", {class: "filters"}, search, kinds, axis.element, count), list.element);
-  element("stage").append(
+  element("stage").append(h("div", {class: "controls"},
     player.element,
     h("div", {class: "views"},
       h("button", {title: "Look along the axis (a)", click: () => stage.lookAlong()}, "along axis"),
-      h("button", {title: "First view (f)", click: () => stage.home()}, "reset")));
+      h("button", {title: "First view (f)", click: () => stage.home()}, "reset"))));
   const tabs = [["list", "List"], ["detail", "Details"]].map(([name, text]) =>
     h("button", {"data-tab": name, click: () => showTab(name)}, text));
   element("tabs").append(...tabs);

@@ -1,6 +1,6 @@
 // An isometry as a motion: where it is at time 0..1 on its way from the identity. What it reverses goes flat half way.
 import {Matrix4, Quaternion, Vector3} from "three";
-import type {Frame, Symmetry} from "./report";
+import {type Frame, moves, type Symmetry, turns} from "./report";
 
 export type Motion = (t: number) => Matrix4;
 
@@ -15,15 +15,13 @@ interface Elements {
 
 function elementsOf(s: Symmetry, frame: Frame): Elements {
   const {axis, plane, center, angle_deg, step} = s.isometry;
-  const moves = s.type === "T" || s.type === "Z" || s.type === "W";
-  const turns = s.type === "C" || s.type === "S" || s.type === "W";
   const centre = center ?? plane?.point ?? axis?.point;
   const direction = axis ? frame.direction(axis.direction) : null;
   return {
     centre: centre ? frame.point(centre) : new Vector3(),
-    axis: turns ? direction ?? new Vector3(0, 0, 1) : null,
-    angle: turns ? (angle_deg * Math.PI) / 180 : 0,
-    step: moves && direction ? direction.clone().multiplyScalar(step * frame.scale) : new Vector3(),
+    axis: turns(s) ? direction ?? new Vector3(0, 0, 1) : null,
+    angle: turns(s) ? (angle_deg * Math.PI) / 180 : 0,
+    step: moves(s) && direction ? direction.clone().multiplyScalar(step * frame.scale) : new Vector3(),
     normal: plane && (s.type === "M" || s.type === "Z" || s.type === "S") ? frame.direction(plane.normal) : null,
     inverts: s.type === "I",
   };

@@ -7,13 +7,14 @@ const kVertex = `
 attribute vec3 colour;
 attribute float mark;
 uniform float size;
+uniform float scale;
 varying vec3 vColour;
 varying float vMark;
 void main() {
   vColour = colour;
   vMark = mark;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-  gl_PointSize = size * (mark > 0.5 ? 1.9 : 1.0);
+  gl_PointSize = size * scale * (mark > 0.5 ? 1.9 : 1.0);
 }`;
 
 const kFragment = `
@@ -37,6 +38,7 @@ interface Style {
   opacity: number;
   rim: number;
   through: boolean; // also where the model hides them
+  scale: {value: number}; // of the size; may change later
 }
 
 export function makePoints(positions: Vector3[], colours: Color[], marks: Mark[], style: Style): Points {
@@ -49,7 +51,7 @@ export function makePoints(positions: Vector3[], colours: Color[], marks: Mark[]
     vertexShader: kVertex,
     fragmentShader: kFragment,
     uniforms: {
-      size: {value: style.size}, opacity: {value: style.opacity}, rim: {value: new Color(style.rim)},
+      size: {value: style.size}, scale: style.scale, opacity: {value: style.opacity}, rim: {value: new Color(style.rim)},
       rimStart: {value: style.size < 7 ? 2 : 0.8}, // small ones have none
     },
     transparent: true,

@@ -34,6 +34,10 @@ export interface Symmetry {
   implied_by: number[];
 }
 
+/// Whether it turns about an axis; whether it moves by a step.
+export const turns = (s: Symmetry): boolean => "CSW".includes(s.type);
+export const moves = (s: Symmetry): boolean => "TZW".includes(s.type);
+
 export interface Entity {
   kind: "vertex" | "edge" | "face";
   id: number;

@@ -1,11 +1,13 @@
 // The picture: model, points, the chosen symmetry on it, its motion. Draws only when something has changed.
 import {
   AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Group, LineBasicMaterial,
-  LineSegments, Matrix4, Mesh, MeshLambertMaterial, type Object3D, OrthographicCamera, Plane, Raycaster, Scene, Vector2,
+  LineSegments, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, type Object3D, OrthographicCamera, Plane, type Points, Raycaster, Scene, Vector2,
   Vector3, WebGLRenderer,
 } from "three";
 import {OrbitControls} from "three/examples/jsm/controls/OrbitControls.js";
+import {onNextFrame} from "./dom";
 import {drawElements} from "./elements";
+import {type Ghost, ghostsOf} from "./ghosts";
 import {LineSet} from "./lines";
 import {type Motion, motionOf} from "./motion";
 import {kDark, kLight, orbitColour, type Theme} from "./palette";
@@ -14,6 +16,8 @@ import {type Frame, frameOf, type Model, type Report, type Symmetry} from "./rep
 
 const kPickRadius = 14; // pixels
 const kManyPoints = 5000; // smooth edges would take too long
+const kFullPoints = 520; // pixels of the canvas from which points have their full size
+const kLeastPoints = 0.6; // of it
 
 export class Stage {
   readonly frame: Frame;
@@ -25,6 +29,7 @@ export class Stage {
   private readonly surface: BufferGeometry;
   private readonly lines: BufferGeometry;
   private readonly pointOf = new Map<string, number>(); // "face 12" -> point
+  private readonly shapes = new Set<string>(); // "face 12", "edge 3": what the model has
   private readonly base = new Group(); // model and points
   private readonly overlay = new Group(); // the chosen symmetry
   private readonly mover = new Group(); // what moves
@@ -33,7 +38,8 @@ export class Stage {
   private shown: Symmetry | null = null;
   private picked: number | null = null;
   private motion: Motion | null = null;
-  private asked = false;
+  private readonly pointScale = {value: 1}; // from the sizes below to pixels of the canvas
+  private readonly ask = onNextFrame(() => this.draw());
   onFrame: () => void = () => {};
 
   constructor(private readonly canvas: HTMLCanvasElement, private readonly report: Report, private readonly model: Model) {
@@ -41,9 +47,11 @@ export class Stage {
     this.positions = report.points.map((p) => this.frame.point(p));
     this.surface = this.makeSurface();
     this.lines = this.makeLines();
-    report.entities?.forEach((entity, i) => {
-      for (const id of entity.ids ?? [entity.id]) this.pointOf.set(`${entity.kind} ${id}`, i);
+    report.points.forEach((_, i) => {
+      for (const name of this.names(i)) this.pointOf.set(name, i);
     });
+    for (const id of model.faces) this.shapes.add(`face ${id}`);
+    for (const id of model.line_edges) this.shapes.add(`edge ${id}`);
     this.renderer = new WebGLRenderer({canvas, antialias: report.points.length < kManyPoints});
     this.renderer.localClippingEnabled = true;
     if (!this.flat) this.camera.up.set(0, 0, 1); // before the controls, which take it once
@@ -110,6 +118,11 @@ export class Stage {
     }));
   }
 
+  /// `size`: in pixels of a canvas that is not small. `through`: also where the model hides them.
+  private points(positions: Vector3[], colours: Color[], marks: Mark[], size: number, opacity = 1, through = false): Points {
+    return makePoints(positions, colours, marks, {size, opacity, through, rim: this.theme.background, scale: this.pointScale});
+  }
+
   private edgeLines(colour: number, opacity: number): LineSegments {
     return new LineSegments(this.lines, new LineBasicMaterial({color: colour, transparent: true, opacity}));
   }
@@ -139,9 +152,15 @@ export class Stage {
     const sides = this.theme.halves.map((c) => new Color(c).lerp(plain, 0.35));
     const colours = this.positions.map((p) =>
       halves && !this.hasModel ? sides[p.dot(halves.normal) >= halves.offset ? 0 : 1] : plain);
-    const size = this.pixels(this.hasModel ? (this.shown ? 3 : 5) : this.positions.length > 3000 ? 5 : 8);
+    const size = this.hasModel ? (this.shown ? 3 : 5) : this.positions.length > 3000 ? 5 : 8;
     const marks = this.positions.map(() => Mark.disc);
-    this.base.add(makePoints(this.positions, colours, marks, {size, opacity: 1, rim: this.theme.background, through: false}));
+    this.base.add(this.points(this.positions, colours, marks, size));
+  }
+
+  /// The faces or edges that a point stands for: "face 12".
+  private names(point: number): string[] {
+    const entity = this.report.entities?.[point];
+    return entity ? (entity.ids ?? [entity.id]).map((id) => `${entity.kind} ${id}`) : [];
   }
 
   // The chosen symmetry ----------------------------------------------------------------------------
@@ -153,12 +172,8 @@ export class Stage {
   /// Entities of the orbits: "face 12" -> colour.
   private colouredEntities(s: Symmetry): Map<string, Color> {
     const colours = new Map<string, Color>();
-    const entities = this.report.entities;
-    if (!entities) return colours;
     s.cycles.forEach((cycle, c) => {
-      for (const i of cycle.points)
-        for (const id of entities[i].ids ?? [entities[i].id])
-          colours.set(`${entities[i].kind} ${id}`, orbitColour(c, this.dark));
+      for (const i of cycle.points) for (const name of this.names(i)) colours.set(name, orbitColour(c, this.dark));
     });
     return colours;
   }
@@ -189,10 +204,47 @@ export class Stage {
     return new Mesh(geometry, new MeshLambertMaterial({vertexColors: true, side: DoubleSide}));
   }
 
+  /// Faces and edges as they would stand in the empty slots; seen through the model, as holes would be inside it.
+  private drawGhosts(found: Ghost[]): void {
+    const ghosts = new Map<string, Matrix4[]>();
+    for (const {point, matrix} of found)
+      for (const name of this.names(point)) ghosts.set(name, [...(ghosts.get(name) ?? []), matrix]);
+    if (ghosts.size === 0) return;
+    const colour = new Color(this.theme.element);
+    const corners: number[] = [];
+    const places = this.surface.getAttribute("position");
+    const p = new Vector3();
+    const {faces, triangles, line_edges, line_starts} = this.model;
+    faces.forEach((id, t) => {
+      for (const matrix of ghosts.get(`face ${id}`) ?? [])
+        for (let k = 0; k < 3; ++k)
+          corners.push(...p.fromBufferAttribute(places, triangles[3 * t + k]).applyMatrix4(matrix).toArray());
+    });
+    const edges = new LineSet();
+    line_edges.forEach((id, line) => {
+      for (const matrix of ghosts.get(`edge ${id}`) ?? [])
+        for (let i = line_starts[line]; i + 1 < this.lineEnd(line); ++i)
+          edges.add(this.linePoint(i).applyMatrix4(matrix), this.linePoint(i + 1).applyMatrix4(matrix), colour);
+    });
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(corners), 3));
+    const material = new MeshBasicMaterial(
+      {color: colour, transparent: true, opacity: 0.16, side: DoubleSide, depthTest: false, depthWrite: false});
+    this.overlay.add(new Mesh(geometry, material));
+    const lines = edges.make(1.8, 0.9, true);
+    if (lines) this.overlay.add(lines);
+  }
+
+  private slots(s: Symmetry): {ghosts: Ghost[]; others: Vector3[]} {
+    return ghostsOf(s, this.frame, this.positions, (point) => this.names(point).some((name) => this.shapes.has(name)));
+  }
+
   private drawOverlay(): void {
     clear(this.overlay);
     const s = this.shown;
     if (!s) return;
+    const {ghosts, others} = this.slots(s);
+    this.drawGhosts(ghosts);
     const colours = this.colouredEntities(s);
     const faces = this.colouredFaces(colours);
     if (faces) this.overlay.add(faces);
@@ -220,17 +272,16 @@ export class Stage {
     });
     const ink = new Color(this.theme.ink);
     for (const i of s.fixed_points) mark(this.positions[i], ink, Mark.ring);
-    for (const slot of s.missing) mark(this.frame.point(slot.position), new Color(this.theme.element), Mark.broken);
+    for (const slot of others) mark(slot, new Color(this.theme.element), Mark.broken);
     const many = positions.length;
-    const size = this.pixels(many > 1000 ? 4.5 : many > 300 ? 6 : many > 100 ? 8 : 11);
+    const size = many > 1000 ? 4.5 : many > 300 ? 6 : many > 100 ? 8 : 11;
     const thin = s.cycles.length > 60 ? 0.5 : 1; // hundreds of cycles would hide the model
-    const rim = this.theme.background;
     const layers = [
       edges.make(2.6, 1, false),
       this.hasModel ? paths.make(1.6 * thin, 0.4 * thin, true) : null, // seen through the model
       paths.make(2.4 * thin, 0.5 + 0.5 * thin, false),
-      this.hasModel ? makePoints(positions, shades, marks, {size: size * 0.8, opacity: 0.45, rim, through: true}) : null,
-      makePoints(positions, shades, marks, {size, opacity: 1, rim, through: false}),
+      this.hasModel ? this.points(positions, shades, marks, size * 0.8, 0.45, true) : null,
+      this.points(positions, shades, marks, size),
     ];
     for (const layer of layers) if (layer) this.overlay.add(layer);
     const {sign} = motionOf(s, this.frame);
@@ -254,15 +305,14 @@ export class Stage {
     if (this.hasModel) this.mover.add(this.surfaceMesh(this.theme.mover, 0.28), this.edgeLines(this.theme.mover, 0.9));
     const points = s.cycles.flatMap((cycle) => cycle.points).map((i) => this.positions[i]);
     const colour = new Color(this.theme.mover);
-    this.mover.add(makePoints(points, points.map(() => colour), points.map(() => Mark.ring),
-      {size: this.pixels(7), opacity: 1, rim: this.theme.background, through: true}));
+    const size = this.hasModel && points.length > 100 ? 2.5 : 7; // where many would hide what moves
+    this.mover.add(this.points(points, points.map(() => colour), points.map(() => Mark.ring), size, 1, true));
   }
 
   private drawPick(): void {
     clear(this.pick);
     if (this.picked === null) return;
-    this.pick.add(makePoints([this.positions[this.picked]], [new Color(this.theme.ink)], [Mark.ring],
-      {size: this.pixels(13), opacity: 1, rim: this.theme.background, through: true}));
+    this.pick.add(this.points([this.positions[this.picked]], [new Color(this.theme.ink)], [Mark.ring], 13, 1, true));
   }
 
   private drawAll(): void {
@@ -334,10 +384,6 @@ export class Stage {
     this.ask();
   }
 
-  private pixels(n: number): number {
-    return n * this.renderer.getPixelRatio();
-  }
-
   private resize(): void {
     const box = this.canvas.parentElement as Element;
     const width = Math.max(1, box.clientWidth);
@@ -349,17 +395,9 @@ export class Stage {
     this.camera.updateProjectionMatrix();
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
     this.renderer.setSize(width, height);
+    // On a small canvas points are smaller, so that the model is still seen.
+    this.pointScale.value = this.renderer.getPixelRatio() * Math.min(1, Math.max(kLeastPoints, Math.min(width, height) / kFullPoints));
     this.ask();
-  }
-
-  /// Draws with the next frame.
-  private ask(): void {
-    if (this.asked) return;
-    this.asked = true;
-    requestAnimationFrame(() => {
-      this.asked = false;
-      this.draw();
-    });
   }
 
   draw(): void {
@@ -403,6 +441,12 @@ export class Stage {
   }
 
   // For tests --------------------------------------------------------------------------------------
+
+  /// How many empty slots of the chosen symmetry are drawn as what would fill them, and how many as rings.
+  emptySlots(): {ghosts: number; rings: number} {
+    const {ghosts, others} = this.shown ? this.slots(this.shown) : {ghosts: [], others: []};
+    return {ghosts: ghosts.length, rings: others.length};
+  }
 
   /// The largest distance of the end of a motion from the matrix of the report, over all symmetries.
   motionError(): number {

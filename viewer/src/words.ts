@@ -1,5 +1,5 @@
 // What the page says about a symmetry, an entity, a number.
-import type {Entity, Letter, Report, Symmetry} from "./report";
+import {type Entity, type Letter, moves, type Report, type Symmetry, turns} from "./report";
 
 export const kLetters: Letter[] = ["M", "I", "C", "T", "Z", "S", "W"];
 
@@ -18,7 +18,7 @@ export function kindWord(s: Symmetry): string {
 }
 
 export function symbol(s: Symmetry): string {
-  return s.order !== null && (s.type === "C" || s.type === "S" || s.type === "W") ? s.type + s.order : s.type;
+  return s.order !== null && turns(s) ? s.type + s.order : s.type;
 }
 
 export function number(x: number, digits = 4): string {
@@ -29,10 +29,16 @@ export function number(x: number, digits = 4): string {
   return text.replaceAll("-", "−");
 }
 
+export function counted(count: number, what: string): string {
+  return `${count} ${what}${count === 1 ? "" : "s"}`;
+}
+
 export class Words {
   private readonly unit: string;
+  readonly plane: string; // in 2D a mirror is a line
   constructor(private readonly report: Report) {
     this.unit = report.input.unit ? " " + report.input.unit : "";
+    this.plane = report.input.dimension === 2 ? "line" : "plane";
   }
 
   length(x: number): string {
@@ -74,11 +80,11 @@ export class Words {
   where(s: Symmetry): string {
     const {axis, plane, center, angle_deg, step} = s.isometry;
     const parts: string[] = [];
-    if (s.type === "C" || s.type === "S" || s.type === "W") parts.push(`${number(angle_deg)}°`);
-    if (s.type === "T" || s.type === "Z" || s.type === "W") parts.push(`step ${this.length(step)}`);
+    if (turns(s)) parts.push(`${number(angle_deg)}°`);
+    if (moves(s)) parts.push(`step ${this.length(step)}`);
     if (axis) parts.push(`axis ${this.direction(axis.direction)}`);
     else if (center) parts.push(`centre ${this.place(center)}`);
-    if (plane) parts.push(`plane ⊥ ${this.direction(plane.normal)}`);
+    if (plane) parts.push(`${this.plane} ⊥ ${this.direction(plane.normal)}`);
     return parts.join(", ");
   }
 
