@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "isometry/fit.hpp"
 #include "view/shown_part.hpp"
 #include "view/solids.hpp"
 
@@ -59,15 +60,8 @@ public:
     }
 
 private:
-    Vector3f place(const Point& p) const {
-        const Point& o = drawing_.origin;
-        return {static_cast<float>(p[0] - o[0]), static_cast<float>(p[1] - o[1]),
-                static_cast<float>(p[2] - o[2])};
-    }
-    static Vector3f direction(const Point& d) {
-        return Vector3f(static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2]))
-            .normalized();
-    }
+    Vector3f place(const Point& p) const { return (to_vector(p) - to_vector(drawing_.origin)).cast<float>(); }
+    static Vector3f direction(const Point& d) { return to_vector(d).cast<float>().normalized(); }
     Vector3f position(int i) const { return place(result_.points.positions[static_cast<std::size_t>(i)]); }
     float size(float share) const { return share * drawing_.radius; }
 
@@ -97,39 +91,31 @@ private:
     void draw_model() {
         const ShadedMesh all = shade(model_, drawing_.origin);
         const auto cycles = cycle_of(EntityKind::face);
-        std::map<std::size_t, ShadedMesh> coloured;
-        ShadedMesh rest;
-        rest.positions = all.positions;
-        rest.normals = all.normals;
+        std::map<std::size_t, std::vector<std::size_t>> coloured;
+        std::vector<std::size_t> plain;
         for (std::size_t t = 0; t < all.triangles.size(); ++t) {
             const auto cycle = all.faces[t] > 0 ? cycles.find(all.faces[t]) : cycles.end();
-            ShadedMesh& mesh = cycle == cycles.end() ? rest : coloured[cycle->second];
-            if (cycle == cycles.end()) {
-                mesh.triangles.push_back(all.triangles[t]);
-                continue;
-            }
-            std::array<std::uint32_t, 3> corners{};
-            for (std::size_t k = 0; k < 3; ++k) {
-                corners[k] = static_cast<std::uint32_t>(mesh.positions.size());
-                mesh.positions.push_back(all.positions[all.triangles[t][k]]);
-                mesh.normals.push_back(all.normals[all.triangles[t][k]]);
-            }
-            mesh.triangles.push_back(corners);
+            (cycle == cycles.end() ? plain : coloured[cycle->second]).push_back(t);
         }
-        const auto halves = halves_of_model();
-        add("model", PartKind::model, halves ? kHalves[0] : kModel, std::move(rest));
-        if (!drawing_.parts.empty()) drawing_.parts.back().halves = halves;
-        for (auto& [cycle, mesh] : coloured)
-            add(cycle_name(cycle, "faces"), PartKind::model, orbit_colour(cycle), std::move(mesh));
+        draw_plain(part_of(all, plain));
+        for (const auto& [cycle, triangles] : coloured)
+            add(cycle_name(cycle, "faces"), PartKind::model, orbit_colour(cycle), part_of(all, triangles));
     }
 
-    std::optional<Part::Halves> halves_of_model() const {
-        if (symmetry_ == nullptr || !symmetry_->isometry.plane ||
-            (symmetry_->type != SymmetryType::mirror && symmetry_->type != SymmetryType::glide_reflection))
-            return std::nullopt;
+    /// The halves that a plane parts are tinted.
+    void draw_plain(ShadedMesh mesh) {
+        const bool reflects =
+            symmetry_ != nullptr && symmetry_->isometry.plane &&
+            (symmetry_->type == SymmetryType::mirror || symmetry_->type == SymmetryType::glide_reflection);
+        if (!reflects) {
+            add("model", PartKind::model, kModel, std::move(mesh));
+            return;
+        }
         const Plane& plane = *symmetry_->isometry.plane;
         const Vector3f normal = direction(plane.normal);
-        return Part::Halves{normal, normal.dot(place(plane.point)), kHalves[1]};
+        const float offset = normal.dot(place(plane.point));
+        add("model", PartKind::model, kHalves[0], half(mesh, normal, offset));
+        add("model, other half", PartKind::model, kHalves[1], half(mesh, -normal, -offset));
     }
 
     static Colour orbit_colour(std::size_t cycle) { return kOrbits[cycle % kOrbits.size()]; }
@@ -183,12 +169,79 @@ private:
         }
     }
 
+    /// An empty slot, filled by what stands at the end of a cycle, so many steps of the isometry further.
+    struct Ghost {
+        int point;
+        int steps;
+        Point carry(const Isometry& isometry, Point p) const {
+            for (int k = 0; k < steps; ++k) p = isometry.apply(p);
+            return p;
+        }
+    };
+
+    /// Takes the slots that a face or an edge would fill out of `slots`.
+    std::vector<Ghost> take_ghosts(std::vector<Point>& slots) const {
+        std::vector<Ghost> ghosts;
+        if (result_.points.entities.empty() || model_.triangles.empty()) return ghosts;
+        // Slots are placed by fits, the deviation of which adds to a thousandth of the model.
+        const double near = 1e-3 * drawing_.radius + 4 * symmetry_->deviation.max;
+        for (const Orbit& cycle : symmetry_->cycles) {
+            const int last = cycle.points.back();
+            const auto entity = static_cast<std::size_t>(last);
+            if (cycle.closed || result_.points.entities[entity].kind == EntityKind::vertex) continue;
+            for (Ghost ghost{last, 1};; ++ghost.steps) {
+                const Point p = ghost.carry(symmetry_->isometry, result_.points.positions[entity]);
+                const auto slot = std::find_if(slots.begin(), slots.end(), [&](const Point& q) {
+                    return (to_vector(p) - to_vector(q)).norm() < near;
+                });
+                if (slot == slots.end()) break;
+                slots.erase(slot);
+                ghosts.push_back(ghost);
+            }
+        }
+        return ghosts;
+    }
+
+    void draw_ghosts(const std::vector<Ghost>& ghosts) {
+        Tessellation surface;
+        ShadedMesh edges;
+        for (const Ghost& ghost : ghosts) {
+            const auto carried = [&](int v) {
+                return ghost.carry(symmetry_->isometry, model_.vertices[static_cast<std::size_t>(v)]);
+            };
+            const Entity& entity = result_.points.entities[static_cast<std::size_t>(ghost.point)];
+            const auto is_its = [&](EntityKind kind, std::int64_t id) {
+                return kind == entity.kind &&
+                       (id == entity.id ||
+                        std::find(entity.ids.begin(), entity.ids.end(), id) != entity.ids.end());
+            };
+            for (std::size_t t = 0; t < model_.triangles.size(); ++t) {
+                if (!is_its(EntityKind::face, model_.faces[t])) continue;
+                std::array<int, 3> corners{};
+                for (std::size_t k = 0; k < 3; ++k) {
+                    corners[k] = static_cast<int>(surface.vertices.size());
+                    surface.vertices.push_back(carried(model_.triangles[t][k]));
+                }
+                surface.triangles.push_back(corners);
+            }
+            for (const Tessellation::Line& line : model_.lines)
+                if (is_its(EntityKind::edge, line.edge))
+                    for (std::size_t i = 1; i < line.vertices.size(); ++i)
+                        add_tube(place(carried(line.vertices[i - 1])), place(carried(line.vertices[i])),
+                                 size(2 * kLine), edges);
+        }
+        add("empty slots, faces", PartKind::ghost, kElement, shade(surface, drawing_.origin));
+        add("empty slots, edges", PartKind::overlay, kElement, std::move(edges));
+    }
+
     void draw_marks() {
+        std::vector<Point> slots = symmetry_->missing;
+        draw_ghosts(take_ghosts(slots));
         ShadedMesh fixed, missing;
-        const Vector3f towards = Vector3f(0.62F, -0.94F, 0.72F);  // a view from which rings look like rings
+        const Vector3f towards(kEye.data());  // so that rings look like rings
         for (const int i : symmetry_->fixed_points)
             add_ring(position(i), towards, size(1.6F * kDot), size(0.35F * kDot), fixed);
-        for (const Point& slot : symmetry_->missing)
+        for (const Point& slot : slots)
             add_ring(place(slot), towards, size(2 * kDot), size(0.4F * kDot), missing);
         add("fixed points", PartKind::overlay, kInk, std::move(fixed));
         add("empty slots", PartKind::overlay, kElement, std::move(missing));

@@ -3,8 +3,7 @@
 
 #include "insym/detect.hpp"
 
-#include <Eigen/Core>
-#include <optional>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -21,6 +20,7 @@ enum class PartKind {
     model,    ///< solid
     overlay,  ///< also seen, faintly, through the model
     sheet,    ///< translucent
+    ghost,    ///< translucent, also seen through the model
 };
 
 struct Part {
@@ -28,14 +28,10 @@ struct Part {
     PartKind kind = PartKind::model;
     Colour colour;
     ShadedMesh mesh{};
-    /// The half on the side of the normal has `colour`, the other one this colour.
-    struct Halves {
-        Eigen::Vector3f normal;
-        float offset = 0;
-        Colour other;
-    };
-    std::optional<Halves> halves{};
 };
+
+/// From where still pictures are taken: x, y, z towards the eye.
+constexpr std::array<float, 3> kEye = {0.62F, -0.94F, 0.72F};
 
 /// Coordinates less `origin`; everything lies within `radius` of it.
 struct Drawing {

@@ -111,14 +111,14 @@ private:
     }
 
     int material(const Part& part) {
-        constexpr double kSheetOpacity = 0.2;
+        constexpr double kOpacity = 0.2;
         tinygltf::Material material;
         material.name = part.name;
         material.doubleSided = true;
-        const bool sheet = part.kind == PartKind::sheet;
-        if (sheet) material.alphaMode = "BLEND";
+        const bool clear = part.kind == PartKind::sheet || part.kind == PartKind::ghost;
+        if (clear) material.alphaMode = "BLEND";
         material.pbrMetallicRoughness.baseColorFactor = {linear(part.colour.red), linear(part.colour.green),
-                                                         linear(part.colour.blue), sheet ? kSheetOpacity : 1};
+                                                         linear(part.colour.blue), clear ? kOpacity : 1};
         material.pbrMetallicRoughness.metallicFactor = 0;
         material.pbrMetallicRoughness.roughnessFactor = 0.7;
         gltf_.materials.push_back(material);

@@ -39,7 +39,7 @@ struct View {
 
 View view_of(int dimension) {
     if (dimension == 2) return {Vector3f::UnitX(), Vector3f::UnitY(), -Vector3f::UnitZ()};
-    const Vector3f forward = -Vector3f(0.62F, -0.94F, 0.72F).normalized();
+    const Vector3f forward = -Vector3f(kEye.data()).normalized();
     const Vector3f right = forward.cross(Vector3f::UnitZ()).normalized();
     return {right, right.cross(forward), forward};
 }
@@ -62,24 +62,27 @@ public:
           light_((-0.8F * view_.right + 1.2F * view_.up - 1.6F * view_.forward).normalized()),
           all_(drawing.parts, {PartKind::model, PartKind::overlay}),
           overlay_(drawing.parts, {PartKind::overlay}),
-          sheets_(drawing.parts, {PartKind::sheet}) {
+          sheets_(drawing.parts, {PartKind::sheet}),
+          ghosts_(drawing.parts, {PartKind::ghost}) {
         fit(drawing);
     }
 
     /// `column`, `row`: pixels from the upper left corner of the panel.
     Colour look(float column, float row) const {
-        constexpr float kThrough = 0.4F, kSheet = 0.16F;
+        constexpr float kThrough = 0.4F, kSheet = 0.16F, kGhost = 0.3F;
         const float x = middle_.x() + (column - kPanelWidth / 2.0F) * pixel_;
         const float y = middle_.y() - (row - kPanelHeight / 2.0F) * pixel_;
         const Vector3f from = x * view_.right + y * view_.up - 4 * radius_ * view_.forward;
         const auto front = all_.first_hit(from, view_.forward);
-        Colour colour = front ? shaded(*front, from) : kGround;
+        Colour colour = front ? shaded(*front) : kGround;
         if (front && front->part->kind == PartKind::model)
             if (const auto behind = overlay_.first_hit(from, view_.forward))
                 colour = mix(colour, behind->part->colour, kThrough);
         const auto sheet = sheets_.first_hit(from, view_.forward);
         if (sheet && (!front || sheet->distance < front->distance))
             colour = mix(colour, sheet->part->colour, kSheet);
+        if (const auto ghost = ghosts_.first_hit(from, view_.forward))
+            colour = mix(colour, ghost->part->colour, kGhost);
         return colour;
     }
 
@@ -99,15 +102,10 @@ private:
                            1e-6F * radius_});
     }
 
-    Colour shaded(const Hit& hit, const Vector3f& from) const {
+    Colour shaded(const Hit& hit) const {
         constexpr float kAmbient = 0.5F, kDirect = 0.55F;
-        Colour colour = hit.part->colour;
-        if (const auto& halves = hit.part->halves) {
-            const Vector3f place = from + hit.distance * view_.forward;
-            if (place.dot(halves->normal) < halves->offset) colour = halves->other;
-        }
         const float facing = hit.normal.dot(view_.forward) < 0 ? 1.0F : -1.0F;
-        return scaled(colour, kAmbient + kDirect * std::max(0.0F, facing * hit.normal.dot(light_)));
+        return scaled(hit.part->colour, kAmbient + kDirect * std::max(0.0F, facing * hit.normal.dot(light_)));
     }
 
     float radius_;
@@ -115,7 +113,7 @@ private:
     Eigen::Vector2f middle_ = Eigen::Vector2f::Zero();
     View view_;
     Vector3f light_;
-    RayScene all_, overlay_, sheets_;
+    RayScene all_, overlay_, sheets_, ghosts_;
 };
 
 // Pixels --------------------------------------------------------------------------------------
@@ -188,7 +186,8 @@ std::string caption_of(const Symmetry& symmetry, const ReportContext& context, d
     if (symmetry.isometry.step > 0) text += ", step " + number(symmetry.isometry.step) + unit;
     text +=
         "   " + std::to_string(symmetry.cycles.size()) + (symmetry.cycles.size() == 1 ? " cycle" : " cycles");
-    if (!symmetry.missing.empty()) text += ", " + std::to_string(symmetry.missing.size()) + " empty slots";
+    if (const std::size_t slots = symmetry.missing.size(); slots > 0)
+        text += ", " + std::to_string(slots) + (slots == 1 ? " empty slot" : " empty slots");
     const double deviation = symmetry.deviation.max;
     return text + (deviation <= resolution ? ", exact" : ", deviation up to " + number(deviation) + unit);
 }

@@ -21,13 +21,6 @@
 namespace insym {
 namespace {
 
-Point carry(const Isometry& f, const Point& p) {
-    Point q{};
-    for (std::size_t i = 0; i < 3; ++i)
-        q[i] = f.linear[i][0] * p[0] + f.linear[i][1] * p[1] + f.linear[i][2] * p[2] + f.translation[i];
-    return q;
-}
-
 double distance(const Point& p, const Point& q) {
     return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
 }
@@ -37,8 +30,8 @@ bool same(const Symmetry& a, const Symmetry& b, const std::vector<Point>& points
     if (a.type != b.type) return false;
     double direct = 0, inverse = 0;
     for (const Point& p : points) {
-        direct = std::max(direct, distance(carry(a.isometry, p), carry(b.isometry, p)));
-        inverse = std::max(inverse, distance(carry(a.isometry, carry(b.isometry, p)), p));
+        direct = std::max(direct, distance(a.isometry.apply(p), b.isometry.apply(p)));
+        inverse = std::max(inverse, distance(a.isometry.apply(b.isometry.apply(p)), p));
     }
     return std::min(direct, inverse) <= length;
 }
