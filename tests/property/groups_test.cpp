@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 #include <random>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -201,8 +200,8 @@ double shortest(const std::vector<Point>& points) {
     return best;
 }
 
-DetectResult found_in(const Shape& shape, double noise) {
-    std::mt19937 engine(5);
+DetectResult found_in(const Shape& shape, double noise, unsigned draw = 5) {
+    std::mt19937 engine(draw);
     std::normal_distribution<double> normal(0, std::max(noise, 1e-300) * shortest(shape.points));
     PointSet points;
     points.positions = shape.points;
@@ -235,17 +234,31 @@ TEST(Groups, NamesSolidsExactAndUnderNoise) {
 }
 
 TEST(Groups, NamesMolecules) {
-    // Noise of 1 % leaves these open: what is missing is a mirror that swaps one pair (chloromethane, sulfur
-    // tetrafluoride), or one more fluorine would make an octahedron (bromine pentafluoride).
-    const std::set<std::string> exact_only = {"chloromethane", "sulfur tetrafluoride",
-                                              "bromine pentafluoride"};
-    for (const Shape& shape : molecules())
-        for (const double noise : {0.0, 0.01}) {
-            if (noise > 0 && exact_only.contains(shape.name)) continue;
-            const DetectResult result = found_in(shape, noise);
+    for (const Shape& shape : molecules()) {
+        const DetectResult result = found_in(shape, 0);
+        ASSERT_TRUE(result.group);
+        EXPECT_EQ(result.group->schoenflies, shape.group) << shape.name;
+    }
+}
+
+// Noise of 1 % of the shortest distance leaves some open in one draw or another: a mirror that swaps one pair
+// is missed, or one more fluorine would make an octahedron of bromine pentafluoride. All draws count.
+TEST(Groups, NamesMoleculesUnderNoise) {
+    constexpr int kDraws = 7, kMostWrong = 4;
+    int wrong = 0;
+    for (const Shape& shape : molecules()) {
+        int right = 0;
+        std::string named;
+        for (unsigned draw = 1; draw <= kDraws; ++draw) {
+            const DetectResult result = found_in(shape, 0.01, draw);
             ASSERT_TRUE(result.group);
-            EXPECT_EQ(result.group->schoenflies, shape.group) << shape.name << ", noise " << noise;
+            right += result.group->schoenflies == shape.group ? 1 : 0;
+            named += result.group->schoenflies + " ";
         }
+        EXPECT_GE(right, kDraws - 2) << shape.name << " is " << shape.group << ", named " << named;
+        wrong += kDraws - right;
+    }
+    EXPECT_LE(wrong, kMostWrong);
 }
 
 TEST(Groups, OnePointLess) {
