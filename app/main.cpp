@@ -151,8 +151,7 @@ void check_outputs(const Options& options) {
         std::error_code ignored;
         if (target != "-" && std::filesystem::equivalent(target, options.input, ignored) &&
             std::filesystem::is_regular_file(target, ignored))
-            throw Error(ErrorCode::cannot_write,
-                        target + ": is the input itself; name another file for the report");
+            throw Error(ErrorCode::cannot_write, target + ": is the input itself; name another file");
     }
 }
 

@@ -268,7 +268,7 @@ void declare(CLI::App& detect, Typed& typed) {
     detect.add_flag("--all", typed.all, "List what follows from others as well");
     detect.add_flag("--levels", typed.levels,
                     "List, too, from which tolerance to which each set of symmetries holds");
-    detect.add_flag("--quiet", typed.quiet, "No progress, no notes; with --json FILE no table either");
+    detect.add_flag("--quiet", typed.quiet, "No progress, no notes; with a file no table either");
 }
 
 std::vector<std::string> option_names(const CLI::App& app) {
@@ -316,8 +316,13 @@ void check_values(const CLI::App& detect) {
         }
 }
 
-/// Before the long work: can they be made at all, and does each have a file of its own?
-void check_pictures(Options& options) {
+/// Where the results go. Before the long work: can they be made at all, and does each have a file of its own?
+void take_outputs(const Typed& typed, Options& options) {
+    options.json = typed.json == "/dev/stdout" ? "-" : typed.json;
+    options.html = typed.html;
+    options.gltf = typed.gltf;
+    options.png = typed.png;
+    options.view = typed.view;
     [[maybe_unused]] const bool wanted =
         options.view || !options.html.empty() || !options.gltf.empty() || !options.png.empty();
 #ifndef INSYM_WITH_VIEW
@@ -338,12 +343,7 @@ Options checked(const Typed& typed) {
     Options options;
     options.detect.method = parse_method(typed.method);
     options.input = typed.input;
-    options.json = typed.json == "/dev/stdout" ? "-" : typed.json;
-    options.html = typed.html;
-    options.gltf = typed.gltf;
-    options.png = typed.png;
-    options.view = typed.view;
-    check_pictures(options);
+    take_outputs(typed, options);
     options.detect.types = parse_types(typed.types);
     options.detect.max_tolerance = parse_max_tolerance(typed.max_tolerance);
     options.detect.resolution = parse_resolution(typed.resolution);

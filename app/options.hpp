@@ -16,7 +16,7 @@ struct Options {
     std::string json;             ///< a path, "-" for standard output, empty for no report
     std::string html, gltf, png;  ///< paths, empty for none
     bool view = false;            ///< show the page in the browser
-    int shown = 0;                ///< symmetries in the page and the scene, 0: all
+    int shown = 0;                ///< symmetries in the page, 0: all
     DetectOptions detect;
     ReadPointsOptions read_points;
     ReadMeshOptions read_mesh;  ///< of models, too

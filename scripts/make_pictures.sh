@@ -12,8 +12,7 @@ for model in examples/*.step; do
     echo "$name"
     "$program" detect "$model" --quiet --png "docs/images/$name.png" --html "$scratch/$name-page.html"
 done
-shoot() { node tests/browser/shoot.mjs --only desktop-light "$modules" "$scratch" "$scratch/$1-page.html"; }
-for name in flange spiral_stair staggered_connector bracket; do
-    shoot "$name"
-    mv "$scratch/$name-page-desktop-light.png" "docs/images/$name-page.png"
-done
+pages=()
+for name in flange spiral_stair staggered_connector bracket; do pages+=("$scratch/$name-page.html"); done
+node tests/browser/shoot.mjs --only desktop-light "$modules" "$scratch" "${pages[@]}"
+for page in "${pages[@]}"; do mv "${page%.html}-desktop-light.png" "docs/images/$(basename "$page" .html).png"; done
