@@ -83,7 +83,7 @@ enum class RunStatus { complete, time_limit, cancelled, result_limit };
 
 /// The columns of the paper's Table 1.
 struct Stats {
-    std::size_t seeds = 0;
+    std::size_t seeds = 0;  ///< of method robust: hypotheses tried
     std::size_t cycles = 0;
     std::size_t symmetries = 0;
 };
@@ -97,13 +97,13 @@ struct Timing {
 
 struct DetectResult {
     RunStatus status = RunStatus::complete;
-    DetectOptions options;     ///< as given
-    PointSet points;           ///< after merging; all indices refer to it
-    double diameter = 0;       ///< longest distance between two points
-    double resolution = 0;     ///< the length used, in the input's unit
-    double max_tolerance = 0;  ///< the length used, in the input's unit
-    int merged_points = 0;     ///< how many points fell together with another
-    std::vector<Cycle> cycles;
+    DetectOptions options;             ///< as given
+    PointSet points;                   ///< after merging; all indices refer to it
+    double diameter = 0;               ///< longest distance between two points
+    double resolution = 0;             ///< the length used, in the input's unit
+    double max_tolerance = 0;          ///< the length used, in the input's unit
+    int merged_points = 0;             ///< how many points fell together with another
+    std::vector<Cycle> cycles;         ///< method paper; every symmetry has its own besides
     std::vector<Symmetry> symmetries;  ///< best rank first
     std::optional<PointGroup> group;   ///< method robust
     Stats stats;

@@ -406,9 +406,11 @@ void write_summary(std::ostream& out, const DetectResult& result, const ReportCo
         << fixed_text(result.diameter, decimals_for(result.resolution)) << unit << ", lengths equal within "
         << short_text(result.resolution) << unit << '\n'
         << count_text(result.symmetries.size(), "symmetry", "symmetries") << ", "
-        << count_text(result.cycles.size(), "cycle", "cycles") << ", tolerance up to "
-        << tolerance_used(result, unit) << ", " << seconds_text(context.load_s + result.timing.detect_s)
-        << '\n';
+        << (result.options.method == Method::paper
+                ? count_text(result.cycles.size(), "cycle", "cycles") + ", "
+                : "")
+        << "tolerance up to " << tolerance_used(result, unit) << ", "
+        << seconds_text(context.load_s + result.timing.detect_s) << '\n';
 }
 
 std::string_view early_end(RunStatus status) {

@@ -60,10 +60,14 @@ std::string row(const std::string& text, const std::string& id) {
 }
 
 TEST(Table, SaysFirstWhatWasRead) {
-    const std::string text = table_of(ring_result());
+    DetectResult ring = ring_result();
+    ring.options.method = Method::paper;
+    const std::string text = table_of(ring);
     EXPECT_THAT(text, HasSubstr("a.xyz: 4 points in 3D, diameter 2 mm, lengths equal within 0.000002 mm\n"));
     EXPECT_THAT(text,
                 HasSubstr("2 symmetries, 1 cycle, tolerance up to 0.1 mm (5 % of the diameter), 0.75 s\n"));
+    // Method robust has no list of cycles.
+    EXPECT_THAT(table_of(ring_result()), HasSubstr("2 symmetries, tolerance up to 0.1 mm"));
     DetectResult automatic = ring_result();
     automatic.options.max_tolerance.reset();
     EXPECT_THAT(table_of(automatic), HasSubstr("(5 % of the diameter, chosen by auto)"));
