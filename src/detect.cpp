@@ -10,6 +10,7 @@
 
 #include "cycles/detect_cycles.hpp"
 #include "parallel_for.hpp"
+#include "points/cloud.hpp"
 #include "points/diameter.hpp"
 #include "points/merge.hpp"
 #include "ranking/implied.hpp"
@@ -150,16 +151,17 @@ void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& mon
 void run_robust(const PointScene& scene, const DetectOptions& options, RunMonitor& monitor,
                 DetectResult& result) {
     const auto start = std::chrono::steady_clock::now();
+    const Cloud cloud(scene);
     const Significance significance(scene);
-    RobustResult found = detect_robust(scene, significance, options.types, monitor);
+    RobustResult found = detect_robust(cloud, significance, options.types, monitor);
     result.symmetries = std::move(found.symmetries);
     if (!options.max_tolerance) result.max_tolerance = found.max_tolerance;
     const Measure measure(scene, significance);
     parallel_for(result.symmetries.size(), [&](std::size_t i) { measure.complete(result.symmetries[i]); });
-    promote_generators(scene, result.symmetries, monitor);
+    promote_generators(cloud, result.symmetries, monitor);
     rank(result.symmetries);
-    mark_implied(scene, result.symmetries, monitor);
-    result.group = point_group(scene, result.symmetries);
+    mark_implied(cloud, result.symmetries, monitor);
+    result.group = point_group(cloud, result.symmetries);
     result.timing.symmetries_s = seconds_since(start);
     result.stats = {found.hypotheses, 0, result.symmetries.size()};
 }

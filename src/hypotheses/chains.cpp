@@ -90,14 +90,20 @@ bool ring_through(const Vector3d& a, const Vector3d& b, const Vector3d& c, Vecto
 }
 
 /// A turn that takes three points on; false where they are (nearly) in a row.
-bool ring_map(const Vector3d& a, const Vector3d& b, const Vector3d& c, RigidMap& map, double& angle,
-              double& radius) {
+bool ring_map(const Vector3d& a, const Vector3d& b, const Vector3d& c, RigidMap& map, double& radius) {
     Vector3d center, axis;
     if (!ring_through(a, b, c, center, axis)) return false;
     const Vector3d u = a - center, v = b - center;
-    angle = std::atan2(u.cross(v).dot(axis), u.dot(v));
     radius = u.norm();
-    map.linear = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+    // Rodrigues' formula, without the angle.
+    const double scale = 1 / std::sqrt(u.squaredNorm() * v.squaredNorm());
+    const double cosine = u.dot(v) * scale, sine = u.cross(v).dot(axis) * scale;
+    map.linear = (1 - cosine) * axis * axis.transpose();
+    map.linear.diagonal().array() += cosine;
+    const Vector3d across = sine * axis;
+    map.linear(0, 1) -= across.z(), map.linear(1, 0) += across.z();
+    map.linear(0, 2) += across.y(), map.linear(2, 0) -= across.y();
+    map.linear(1, 2) -= across.x(), map.linear(2, 1) += across.x();
     map.shift = center - map.linear * center;
     return true;
 }
@@ -148,12 +154,12 @@ private:
 
     void ring(int a, int b, int c) {
         RigidMap map;
-        double angle = 0, radius = 0;
-        if (!ring_map(at(a), at(b), at(c), map, angle, radius)) return;
-        // One more point of the ring, at either end or one step beyond; a triangle is whole as it is.
-        constexpr double kThird = 2.0943951023931953;
-        const bool triangle = std::abs(std::abs(angle) - kThird) * radius <= three_;
-        double fourth = std::abs(std::abs(angle) - kThird) * radius;
+        double radius = 0;
+        if (!ring_map(at(a), at(b), at(c), map, radius)) return;
+        // One more point of the ring, at either end or one step beyond; a triangle is whole as it is. Its
+        // third side says how far the turn is from a third: it shrinks by one and a half times as much.
+        double fourth = std::abs(distances_(a, c) - distances_(a, b)) / 1.5;
+        const bool triangle = fourth <= three_;
         if (!triangle) {
             const int label = cloud_.label(group_.front());
             double ignored = 0;
@@ -230,10 +236,9 @@ public:
         slack_ = std::max(slack_, 2 * cloud.scene().resolution);
     }
 
-    std::vector<Candidate> run() {
-        constexpr double kLooks = 1e6;
+    std::vector<Candidate> run(double looks) {
         const int n = static_cast<int>(group_.size());
-        const int picks = std::max(4, std::min(n, static_cast<int>(kLooks / n / n)));
+        const int picks = std::max(4, std::min(n, static_cast<int>(looks / n / n)));
         for (int a = 0; a < n; ++a)
             for (int mate = a + 1; mate < n; ++mate)
                 for (int k = 0; k < picks; ++k) {
@@ -301,10 +306,10 @@ std::vector<Candidate> chains(const Cloud& cloud, const SearchGroup& group, doub
     return ChainSearch(cloud, group, reach, most).run();
 }
 
-std::vector<Candidate> half_turns(const Cloud& cloud, const SearchGroup& group, double reach,
+std::vector<Candidate> half_turns(const Cloud& cloud, const SearchGroup& group, double reach, double looks,
                                   std::size_t most) {
     if (group.size() < 4 || cloud.dimension() == 2) return {};
-    return HalfTurnSearch(cloud, group, reach, most).run();
+    return HalfTurnSearch(cloud, group, reach, most).run(looks);
 }
 
 Hypothesis hypothesis_of(const Cloud& cloud, const Candidate& candidate) {
@@ -315,8 +320,8 @@ Hypothesis hypothesis_of(const Cloud& cloud, const Candidate& candidate) {
     const auto at = [&](std::size_t k) -> const Vector3d& { return cloud[ids[k]]; };
     const std::size_t length = ids[3] < 0 ? 3 : 4;
     if (length == 3) {
-        double angle = 0, radius = 0;
-        ring_map(at(0), at(1), at(2), h.map, angle, radius);
+        double radius = 0;
+        ring_map(at(0), at(1), at(2), h.map, radius);
     } else {
         h.map = carry({at(0), at(1), at(2)}, {at(1), at(2), at(3)}, is_improper(h.type, cloud.dimension()));
     }

@@ -2,25 +2,35 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "hypotheses/hypothesis.hpp"
+#include "points/cloud.hpp"
 #include "run_monitor.hpp"
-#include "support/cloud.hpp"
 
 namespace insym {
 
 /// Points of one label that are looked at all with all: a whole class, or a part of a large one.
 using SearchGroup = std::vector<int>;
 
-/// Every class of equal labels that is small enough, and overlapping neighbourhoods of the larger ones, so
-/// that what is near and what covers the whole is met. O(n) groups' points for a fixed `most`.
+/// Every class of equal labels that is small enough. Of a larger one: its points farthest out (mates under a
+/// symmetry of the whole stand there together), overlapping neighbourhoods, and points whose neighbours lie
+/// alike, as those of the copies of one part do. O(n log n) points in all.
 std::vector<SearchGroup> search_groups(const Cloud& cloud, std::size_t most);
 
-/// Translations, inversions and mirrors: each pair of points is a vote for one of each. Votes are counted in
-/// cells of several sizes up to `reach`; the fullest `most` cells of each size come back, fullest first.
-/// Time and memory linear in `most_pairs`.
-std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, double reach, std::size_t most_pairs,
+/// Pairs of one label, by index: all of them, or those of the points of some with all, spread over the set,
+/// and of neighbours in the order of their distance from the middle.
+using PointPairs = std::vector<std::pair<int, int>>;
+PointPairs spread_pairs(const Cloud& cloud, std::size_t most);
+
+/// All pairs of a group.
+PointPairs pairs_within(const SearchGroup& group);
+
+/// Translations, inversions (half-turns in the plane) and mirrors: each pair is a vote for one of each. Votes
+/// are counted in cells of several sizes up to `reach`; the fullest `most` cells of each size come back,
+/// the smallest cells first, and the fullest of each size. Time and memory linear in the pairs.
+std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, const PointPairs& pairs, double reach,
                              std::size_t most);
 
 /// A chain of points, or two pairs, that may be carried into one another. Small, as there are many.
@@ -32,14 +42,23 @@ struct Candidate {
 };
 
 /// Half-turns from two pairs A, A' and B, B' with |AB| = |A'B'| and |AB'| = |A'B|. The `most` that agree
-/// best, best first.
-std::vector<Candidate> half_turns(const Cloud& cloud, const SearchGroup& group, double reach,
+/// best, best first. About `looks` pairs of pairs are looked at, and at least four for each pair.
+std::vector<Candidate> half_turns(const Cloud& cloud, const SearchGroup& group, double reach, double looks,
                                   std::size_t most);
 
 /// Rotations from three points A, B, C with |AB| = |BC|, one of whose neighbours on the ring is there; every
 /// other kind from four with |AB| = |BC| = |CD| and |AC| = |BD|. The `most` that chance explains least, best
 /// first.
 std::vector<Candidate> chains(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most);
+
+struct Agreed {
+    std::vector<Candidate> candidates;
+    std::size_t agreeing = 0;  ///< the first so many stand for more than one
+};
+
+/// Candidates that say the same isometry to the resolution are one: the best of them stays, and what most of
+/// them say comes first; the others keep their order. O(candidates).
+Agreed agreeing_first(const Cloud& cloud, const std::vector<Candidate>& candidates);
 
 /// The isometry that a candidate stands for.
 Hypothesis hypothesis_of(const Cloud& cloud, const Candidate& candidate);

@@ -1,10 +1,62 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
-#include <numeric>
 
 #include "hypotheses/generators.hpp"
+#include "parallel_for.hpp"
 
 namespace insym {
+namespace {
+
+/// Halves that overlap, across the longest side, until they are small: what is near stands in one of them.
+void add_neighbourhoods(const Cloud& cloud, SearchGroup members, std::size_t most,
+                        std::vector<SearchGroup>& out) {
+    constexpr double kShare = 0.55;  // of the members in each half
+    if (members.size() <= most) {
+        out.push_back(std::move(members));
+        return;
+    }
+    Eigen::Vector3d low = cloud[members.front()], high = low;
+    for (const int i : members) {
+        low = low.cwiseMin(cloud[i]);
+        high = high.cwiseMax(cloud[i]);
+    }
+    Eigen::Index axis = 0;
+    (high - low).maxCoeff(&axis);
+    std::sort(members.begin(), members.end(), [&](int a, int b) {
+        return cloud[a][axis] != cloud[b][axis] ? cloud[a][axis] < cloud[b][axis] : a < b;
+    });
+    const auto part = static_cast<std::ptrdiff_t>(std::ceil(kShare * static_cast<double>(members.size())));
+    add_neighbourhoods(cloud, SearchGroup(members.begin(), members.begin() + part), most, out);
+    add_neighbourhoods(cloud, SearchGroup(members.end() - part, members.end()), most, out);
+}
+
+/// Points whose nearest neighbours lie alike: the same corner of each copy of a part, wherever these are.
+/// Distances are told apart in steps of a tenth.
+using Likeness = std::array<int, 4>;
+
+Likeness likeness(const Cloud& cloud, int i) {
+    constexpr double kStep = 0.1;
+    std::array<double, Likeness{}.size()> nearest{};
+    cloud.nearest_distances(i, nearest);
+    Likeness out{};
+    for (std::size_t k = 0; k < nearest.size(); ++k)
+        out[k] = nearest[k] > 0 ? static_cast<int>(std::floor(std::log(nearest[k]) / kStep)) : 0;
+    return out;
+}
+
+void add_alike(const Cloud& cloud, const SearchGroup& members, std::size_t most,
+               std::vector<SearchGroup>& out) {
+    std::vector<Likeness> each(members.size());
+    parallel_for(members.size(), [&](std::size_t k) { each[k] = likeness(cloud, members[k]); });
+    std::map<Likeness, SearchGroup> alike;
+    for (std::size_t k = 0; k < members.size(); ++k) alike[each[k]].push_back(members[k]);
+    for (auto& [_, group] : alike)
+        if (group.size() >= 3) add_neighbourhoods(cloud, std::move(group), most, out);
+}
+
+}  // namespace
 
 std::vector<SearchGroup> search_groups(const Cloud& cloud, std::size_t most) {
     std::map<int, SearchGroup> classes;
@@ -20,19 +72,8 @@ std::vector<SearchGroup> search_groups(const Cloud& cloud, std::size_t most) {
         std::stable_sort(members.begin(), members.end(),
                          [&](int a, int b) { return cloud[a].squaredNorm() > cloud[b].squaredNorm(); });
         groups.emplace_back(members.begin(), members.begin() + static_cast<std::ptrdiff_t>(most));
-        // Neighbourhoods along the three axes of the input: what is meant locally is near.
-        for (int axis = 0; axis < 3; ++axis) {
-            SearchGroup sorted = members;
-            std::stable_sort(sorted.begin(), sorted.end(),
-                             [&](int a, int b) { return cloud[a][axis] < cloud[b][axis]; });
-            const std::size_t size = most / 3;
-            for (std::size_t start = 0; start < sorted.size(); start += size / 2) {
-                const std::size_t end = std::min(sorted.size(), start + size);
-                groups.emplace_back(sorted.begin() + static_cast<std::ptrdiff_t>(start),
-                                    sorted.begin() + static_cast<std::ptrdiff_t>(end));
-                if (end == sorted.size()) break;
-            }
-        }
+        add_neighbourhoods(cloud, members, most / 4, groups);
+        add_alike(cloud, members, most / 4, groups);
     }
     return groups;
 }

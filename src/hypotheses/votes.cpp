@@ -36,25 +36,70 @@ RigidMap map_of(SymmetryType type, const Vector3d& a, const Vector3d& b, int dim
     return fit_of_type(type, {{a, b}}, dimension);
 }
 
-std::uint64_t key_of(std::int64_t x, std::int64_t y, std::int64_t z) {
-    const auto mix = [](std::uint64_t h) {
-        h ^= h >> 31;
-        h *= 0x9E3779B97F4A7C15ULL;
-        return h ^ (h >> 29);
-    };
-    return mix(static_cast<std::uint64_t>(x) +
-               mix(static_cast<std::uint64_t>(y) + mix(static_cast<std::uint64_t>(z))));
+using Cell = Eigen::Array<std::int64_t, 3, 1>;
+
+Cell home_of(const Vector3d& place, double size) {
+    return (place.array() / size).floor().cast<std::int64_t>();
 }
 
-/// Pairs of one label: all of them, or those of the points farthest out with all, and of neighbours in line.
-std::vector<std::pair<int, int>> pairs_of(const Cloud& cloud, std::size_t most) {
+std::uint32_t key_of(const Cell& cell) {
+    const auto mix = [](std::uint64_t h) {
+        h ^= h >> 31U;
+        h *= 0x9E3779B97F4A7C15ULL;
+        return h ^ (h >> 29U);
+    };
+    const auto at = [&](int axis) { return static_cast<std::uint64_t>(cell[axis]); };
+    return static_cast<std::uint32_t>(mix(at(0) + mix(at(1) + mix(at(2)))) >> 32U);
+}
+
+/// Votes by cell: a hash table with open addresses, small, as there are many cells and most hold one vote.
+/// Two cells of one key among so many are rare, and would only be tried in vain.
+class Cells {
+public:
+    explicit Cells(std::size_t most) {
+        std::size_t size = 16;
+        while (size < 2 * most) size *= 2;
+        mask_ = size - 1;
+        slots_.resize(size);
+    }
+
+    struct Slot {
+        std::uint32_t key = 0;
+        int count = 0;
+        int first = 0;  // of the ballots
+    };
+
+    void add(std::uint32_t key, int ballot) {
+        Slot& s = slots_[place(key)];
+        if (s.count++ == 0) {
+            s.key = key;
+            s.first = ballot;
+        }
+    }
+    /// An empty slot where there are no votes.
+    const Slot& at(std::uint32_t key) const { return slots_[place(key)]; }
+
+private:
+    std::size_t place(std::uint32_t key) const {
+        std::size_t k = key & mask_;
+        while (slots_[k].count > 0 && slots_[k].key != key) k = (k + 1) & mask_;
+        return k;
+    }
+
+    std::size_t mask_ = 0;
+    std::vector<Slot> slots_;
+};
+
+}  // namespace
+
+PointPairs spread_pairs(const Cloud& cloud, std::size_t most) {
     std::map<int, std::vector<int>> classes;
     for (int i = 0; i < cloud.size(); ++i) classes[cloud.label(i)].push_back(i);
     double total = 0;
     for (const auto& [label, members] : classes)
         total += static_cast<double>(members.size()) * static_cast<double>(members.size() - 1) / 2;
     const double share = std::min(1.0, static_cast<double>(most) / std::max(1.0, total));
-    std::vector<std::pair<int, int>> pairs;
+    PointPairs pairs;
     for (auto& [label, members] : classes) {
         const std::size_t m = members.size();
         // With an anchor at either end of a share 1 - (1 - a)^2 of the pairs.
@@ -81,107 +126,78 @@ std::vector<std::pair<int, int>> pairs_of(const Cloud& cloud, std::size_t most) 
     return pairs;
 }
 
-/// Votes by cell: a hash table with open addresses, as there are many cells and most hold one vote.
-class Cells {
-public:
-    explicit Cells(std::size_t most) {
-        std::size_t size = 16;
-        while (size < 2 * most) size *= 2;
-        mask_ = size - 1;
-        slots_.resize(size);
-    }
+PointPairs pairs_within(const SearchGroup& group) {
+    PointPairs pairs;
+    pairs.reserve(group.size() * group.size() / 2);
+    for (std::size_t i = 0; i < group.size(); ++i)
+        for (std::size_t j = i + 1; j < group.size(); ++j) pairs.emplace_back(group[i], group[j]);
+    return pairs;
+}
 
-    struct Slot {
-        std::uint64_t key = 0;
-        int count = 0;
-        int first = 0;  // of the ballots
-    };
-
-    void add(std::uint64_t key, int ballot) {
-        Slot& s = slots_[place(key)];
-        if (s.count++ == 0) {
-            s.key = key;
-            s.first = ballot;
-        }
-    }
-    /// An empty slot where there are no votes.
-    const Slot& at(std::uint64_t key) const { return slots_[place(key)]; }
-    const std::vector<Slot>& slots() const { return slots_; }
-
-private:
-    std::size_t place(std::uint64_t key) const {
-        std::size_t k = key & mask_;
-        while (slots_[k].count > 0 && slots_[k].key != key) k = (k + 1) & mask_;
-        return k;
-    }
-
-    std::size_t mask_ = 0;
-    std::vector<Slot> slots_;
-};
-
-}  // namespace
-
-std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, double reach, std::size_t most_pairs,
+std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, const PointPairs& pairs, double reach,
                              std::size_t most) {
     const Vector3d outside = 2.2 * cloud.radius() * Vector3d(0.31, 0.74, 0.597).normalized();
     const Vector3d far = cloud.dimension() == 2 ? Vector3d(outside.x(), outside.y(), 0) : outside;
     std::vector<Ballot> ballots;
-    for (const auto& [i, j] : pairs_of(cloud, most_pairs))
-        ballots.push_back({ballot_place(type, cloud[i], cloud[j], far), i, j});
+    ballots.reserve(pairs.size());
+    for (const auto& [i, j] : pairs) ballots.push_back({ballot_place(type, cloud[i], cloud[j], far), i, j});
 
     std::vector<double> sizes;
     const double finest = 8 * cloud.scene().resolution;
-    double coarse = 2 * reach;
-    while (coarse > finest) {
-        sizes.push_back(coarse);
-        coarse /= 5;
-    }
-    sizes.push_back(8 * cloud.scene().resolution);
+    for (double size = 2 * reach; size > finest; size /= 8) sizes.push_back(size);
+    sizes.push_back(finest);
 
     struct Ranked {
         int votes;
-        std::size_t first;
+        int first;
         bool operator<(const Ranked& o) const { return votes != o.votes ? votes > o.votes : first < o.first; }
     };
-    std::vector<Hypothesis> out;
+    std::vector<Hypothesis> out;             // the widest cells first, and last turned round
     std::vector<int> alive(ballots.size());  // those that are not alone in a wider cell
     std::iota(alive.begin(), alive.end(), 0);
     for (const double size : sizes) {
         Cells cells(alive.size());
-        const auto home_of = [&](const Vector3d& p) {
-            return Eigen::Array<std::int64_t, 3, 1>((p.array() / size).floor().cast<std::int64_t>());
-        };
+        std::vector<std::uint32_t> keys;
+        keys.reserve(alive.size());
         for (const int b : alive) {
-            const auto home = home_of(ballots[static_cast<std::size_t>(b)].place);
-            cells.add(key_of(home[0], home[1], home[2]), b);
+            keys.push_back(key_of(home_of(ballots[static_cast<std::size_t>(b)].place, size)));
+            cells.add(keys.back(), b);
         }
         std::vector<Ranked> ranked;
         std::vector<int> company;
-        for (const int b : alive) {
+        for (std::size_t k = 0; k < alive.size(); ++k) {
+            const int b = alive[k];
+            const Cells::Slot& own = cells.at(keys[k]);
+            const bool leads = own.first == b;  // the others of its cell need not look further
+            if (!leads && own.count >= kFewVotes) {
+                company.push_back(b);
+                continue;
+            }
             // A cell is joined with the seven whose borders the vote is nearest to.
             const Vector3d& p = ballots[static_cast<std::size_t>(b)].place;
-            const auto home = home_of(p);
-            Eigen::Array<std::int64_t, 3, 1> beside;
-            for (int k = 0; k < 3; ++k)
-                beside[k] = home[k] + (p[k] / size - static_cast<double>(home[k]) < 0.5 ? -1 : 1);
-            const Cells::Slot& own = cells.at(key_of(home[0], home[1], home[2]));
+            const Cell home = home_of(p, size);
+            Cell beside;
+            for (int axis = 0; axis < 3; ++axis)
+                beside[axis] = home[axis] + (p[axis] / size - static_cast<double>(home[axis]) < 0.5 ? -1 : 1);
             int votes = own.count, fullest = own.count;
             for (int corner = 1; corner < 8; ++corner) {
-                const auto pick = [&](int k) { return (corner >> k & 1) == 0 ? home[k] : beside[k]; };
-                const Cells::Slot& near = cells.at(key_of(pick(0), pick(1), pick(2)));
-                votes += near.count;
-                fullest = std::max(fullest, near.count);
+                const auto pick = [&](int axis) {
+                    return (corner >> axis & 1) == 0 ? home[axis] : beside[axis];
+                };
+                const int near = cells.at(key_of({pick(0), pick(1), pick(2)})).count;
+                votes += near;
+                fullest = std::max(fullest, near);
             }
             if (votes < kFewVotes) continue;
             company.push_back(b);
-            if (own.first == b && own.count == fullest)
-                ranked.push_back({votes, static_cast<std::size_t>(b)});
+            if (leads && own.count == fullest) ranked.push_back({votes, b});
         }
         alive = std::move(company);
         std::sort(ranked.begin(), ranked.end());
         if (ranked.size() > most) ranked.resize(most);
+        std::reverse(ranked.begin(), ranked.end());
         for (const Ranked& r : ranked) {
-            const Ballot& b = ballots[r.first];
+            const Ballot& b = ballots[static_cast<std::size_t>(r.first)];
             Hypothesis h;
             h.type = type;
             h.map = map_of(type, cloud[b.from], cloud[b.to], cloud.dimension());
@@ -193,6 +209,7 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, double reach
             out.push_back(h);
         }
     }
+    std::reverse(out.begin(), out.end());
     return out;
 }
 

@@ -219,6 +219,15 @@ RigidMap fit_rotation(const Centred& centred, int dimension) {
 
 }  // namespace
 
+RigidMap map_about(const Isometry& isometry, const Vector3d& middle) {
+    RigidMap map;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+            map.linear(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = isometry.linear[i][j];
+    map.shift = to_vector(isometry.translation) + map.linear * middle - middle;
+    return map;
+}
+
 RigidMap fit_of_type(SymmetryType type, const std::vector<Link>& links, int dimension) {
     if (is_pair_type(type)) return fit_pairs(type, links, dimension);
     const Centred centred(links);

@@ -17,6 +17,18 @@ struct RigidMap {
     Eigen::Vector3d operator()(const Eigen::Vector3d& x) const { return linear * x + shift; }
 };
 
+/// `first`, and `then` on what it gives.
+inline RigidMap compose(const RigidMap& then, const RigidMap& first) {
+    return {then.linear * first.linear, then(first.shift)};
+}
+
+inline RigidMap inverse(const RigidMap& map) {
+    return {map.linear.transpose(), -(map.linear.transpose() * map.shift)};
+}
+
+/// The map of an isometry in coordinates about `middle`.
+RigidMap map_about(const Isometry& isometry, const Eigen::Vector3d& middle);
+
 /// One link: `from` is to be carried to `to`.
 struct Link {
     Eigen::Vector3d from;

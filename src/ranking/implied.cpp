@@ -6,37 +6,18 @@
 
 #include "isometry/fit.hpp"
 #include "parallel_for.hpp"
-#include "points/point_grid.hpp"
 
 namespace insym {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kMostPowers = 24;
 
-RigidMap map_of(const Symmetry& s, const Vector3d& middle) {
-    RigidMap map;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            map.linear(i, j) = s.isometry.linear[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-    map.shift = to_vector(s.isometry.translation) + map.linear * middle - middle;
-    return map;
-}
-
-RigidMap product(const RigidMap& f, const RigidMap& g) {
-    return {f.linear * g.linear, f(g.shift)};
-}
-
-RigidMap inverse(const RigidMap& f) {
-    return {f.linear.transpose(), -(f.linear.transpose() * f.shift)};
-}
-
 /// A symmetry with what is asked of it again and again, about the middle of the set.
 struct Item {
     RigidMap map;
-    std::vector<char> carried;  // points on its orbits, or left in place
+    std::vector<bool> carried;  // points on its orbits, or left in place
     std::vector<int> points;    // on its orbits
     double slack = 0;           // how well a link says the map
     double reach = 0;           // of its points from the middle
@@ -44,18 +25,9 @@ struct Item {
 
 class Implications {
 public:
-    Implications(const PointScene& scene, const std::vector<Symmetry>& symmetries) : symmetries_(symmetries) {
-        const auto n = static_cast<double>(scene.size());
-        for (int i = 0; i < scene.size(); ++i) middle_ += to_vector(scene.position(i)) / n;
-        std::vector<Point> positions;
-        positions.reserve(scene.points.size());
-        for (int i = 0; i < scene.size(); ++i) {
-            places_.emplace_back(to_vector(scene.position(i)) - middle_);
-            positions.push_back(to_point(places_.back()));
-        }
-        grid_ = PointGrid(positions);
-        items_.resize(symmetries.size());
-        parallel_for(symmetries.size(), [&](std::size_t k) { items_[k] = item(scene, symmetries[k]); });
+    Implications(const Cloud& cloud, const std::vector<Symmetry>& symmetries)
+        : cloud_(cloud), symmetries_(symmetries), items_(symmetries.size()) {
+        parallel_for(symmetries.size(), [&](std::size_t k) { items_[k] = item(symmetries[k]); });
     }
 
     /// The same motion on the points of `a`, to what both are known.
@@ -72,7 +44,7 @@ public:
     /// The share of a's points that b carries or leaves in place is (nearly) all.
     bool carries(const Item& b, const Item& a) const {
         const auto in = std::count_if(a.points.begin(), a.points.end(),
-                                      [&](int p) { return b.carried[static_cast<std::size_t>(p)] != 0; });
+                                      [&](int p) { return b.carried[static_cast<std::size_t>(p)]; });
         return 10 * static_cast<std::size_t>(in) >= 9 * a.points.size();
     }
 
@@ -88,29 +60,28 @@ public:
         for (int i = 0; i < count; ++i) {
             out.push_back(forward);
             if (count > 1) out.push_back(backward);
-            forward = product(f, forward);
-            backward = product(back, backward);
+            forward = compose(f, forward);
+            backward = compose(back, backward);
         }
         return out;
     }
 
 private:
     double off(const Item& a, const RigidMap& other, int p) const {
-        const Vector3d& x = places_[static_cast<std::size_t>(p)];
-        return (a.map(x) - other(x)).squaredNorm();
+        return (a.map(cloud_[p]) - other(cloud_[p])).squaredNorm();
     }
 
-    Item item(const PointScene& scene, const Symmetry& s) const {
+    Item item(const Symmetry& s) const {
         Item out;
-        out.map = map_of(s, middle_);
-        out.carried.assign(places_.size(), 0);
+        out.map = map_about(s.isometry, cloud_.middle());
+        out.carried.assign(static_cast<std::size_t>(cloud_.size()), false);
         for (const Orbit& o : s.cycles)
             for (const int p : o.points) {
                 out.points.push_back(p);
-                out.carried[static_cast<std::size_t>(p)] = 1;
+                out.carried[static_cast<std::size_t>(p)] = true;
             }
-        for (const int p : s.fixed_points) out.carried[static_cast<std::size_t>(p)] = 1;
-        out.slack = std::max({s.deviation.max, scene.resolution});
+        for (const int p : s.fixed_points) out.carried[static_cast<std::size_t>(p)] = true;
+        out.slack = std::max(s.deviation.max, cloud_.scene().resolution);
         if (!is_pair_type(s.type) && s.significance < 0) carry_beyond_gaps(s, out);
         return out;
     }
@@ -122,12 +93,11 @@ private:
         for (const Orbit& o : s.cycles) {
             if (o.closed) continue;
             for (const bool forward : {true, false}) {
-                Vector3d place =
-                    places_[static_cast<std::size_t>(forward ? o.points.back() : o.points.front())];
+                Vector3d place = cloud_[forward ? o.points.back() : o.points.front()];
                 for (int k = 0; k < kSteps; ++k) {
                     place = forward ? out.map(place) : back(place);
-                    grid_.visit_ball(to_point(place), 2 * out.slack, [&](int p, double) {
-                        out.carried[static_cast<std::size_t>(p)] = 1;
+                    cloud_.grid().visit_ball(to_point(place), 2 * out.slack, [&](int p, double) {
+                        out.carried[static_cast<std::size_t>(p)] = true;
                         return true;
                     });
                 }
@@ -135,10 +105,8 @@ private:
         }
     }
 
+    const Cloud& cloud_;
     const std::vector<Symmetry>& symmetries_;
-    Vector3d middle_ = Vector3d::Zero();
-    std::vector<Vector3d> places_;
-    PointGrid grid_{{}};
     std::vector<Item> items_;
 };
 
@@ -156,9 +124,9 @@ double slack_of_power(const Item& a, const Item& generator, std::size_t index) {
 
 }  // namespace
 
-void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetries, RunMonitor& monitor) {
+void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, RunMonitor& monitor) {
     if (monitor.should_stop()) return;
-    const Implications all(scene, symmetries);
+    const Implications all(cloud, symmetries);
     constexpr double kShare = 0.4;  // of a power's significance that its generator must have by itself
     // The largest turns and steps first, so that the smallest has the last word.
     std::vector<std::size_t> order;
@@ -193,11 +161,11 @@ void promote_generators(const PointScene& scene, std::vector<Symmetry>& symmetri
     }
 }
 
-void mark_implied(const PointScene& scene, std::vector<Symmetry>& symmetries, RunMonitor& monitor) {
+void mark_implied(const Cloud& cloud, std::vector<Symmetry>& symmetries, RunMonitor& monitor) {
     if (monitor.should_stop()) return;
     constexpr std::size_t kMostGenerators = 24;
     constexpr std::size_t kMostWords = 24;  // powers, forward and back
-    const Implications all(scene, symmetries);
+    const Implications all(cloud, symmetries);
     std::vector<std::size_t> generators;
     std::vector<std::vector<RigidMap>> powers;
     for (std::size_t k = 0; k < symmetries.size() && !monitor.should_stop(); ++k) {
@@ -217,7 +185,7 @@ void mark_implied(const PointScene& scene, std::vector<Symmetry>& symmetries, Ru
                     const std::size_t n = std::min<std::size_t>(powers[h].size(), kMostWords);
                     for (std::size_t i = 0; i < m; ++i)
                         for (std::size_t j = 0; j < n; ++j)
-                            if (all.equal(a, product(powers[g][i], powers[h][j]), slack)) return {g, h};
+                            if (all.equal(a, compose(powers[g][i], powers[h][j]), slack)) return {g, h};
                 }
             return {};
         }();

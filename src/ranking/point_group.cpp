@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "isometry/fit.hpp"
-#include "points/point_grid.hpp"
 
 namespace insym {
 namespace {
@@ -125,15 +124,6 @@ GroupName uniaxial(const Census& c) {
     return {"C" + name, name};
 }
 
-RigidMap map_of(const Symmetry& s, const Vector3d& middle) {
-    RigidMap map;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            map.linear(i, j) = s.isometry.linear[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-    map.shift = to_vector(s.isometry.translation) + map.linear * middle - middle;
-    return map;
-}
-
 }  // namespace
 
 GroupName name_group(const std::vector<Matrix3d>& elements, int dimension) {
@@ -164,22 +154,11 @@ namespace {
 /// The points, the symmetries that may belong to the group, and the empty slots that they ask for.
 class GroupSearch {
 public:
-    GroupSearch(const PointScene& scene, const std::vector<Symmetry>& symmetries)
-        : scene_(scene), symmetries_(symmetries) {
-        const auto n = static_cast<double>(scene.size());
-        for (int i = 0; i < scene.size(); ++i) middle_ += to_vector(scene.position(i)) / n;
-        std::vector<Point> positions;
-        positions.reserve(scene.points.size());
+    GroupSearch(const Cloud& cloud, const std::vector<Symmetry>& symmetries)
+        : cloud_(cloud), symmetries_(symmetries) {
         Matrix3d spread = Matrix3d::Zero();
-        for (int i = 0; i < scene.size(); ++i) {
-            places_.emplace_back(to_vector(scene.position(i)) - middle_);
-            positions.push_back(to_point(places_.back()));
-            spread += places_.back() * places_.back().transpose();
-            radius_ = std::max(radius_, places_.back().norm());
-        }
-        grid_ = PointGrid(positions);
-        gap_ = nearest_gap();
-        const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(spread / n);
+        for (int i = 0; i < cloud.size(); ++i) spread += cloud[i] * cloud[i].transpose();
+        const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(spread / cloud.size());
         extent_ = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
         axes_ = solver.eigenvectors();
     }
@@ -187,7 +166,7 @@ public:
     PointGroup run(std::vector<Symmetry>& symmetries) {
         collect();
         PointGroup group;
-        group.center = to_point(middle_);
+        group.center = to_point(cloud_.middle());
         group.schoenflies = "C1";
         group.hermann_mauguin = "1";
         if (candidates_.empty()) {
@@ -217,23 +196,8 @@ private:
     };
 
     bool point_near(const Vector3d& place, int label, double reach) const {
-        bool found = false;
-        grid_.visit_ball(to_point(place), reach, [&](int j, double) {
-            found = scene_.label(j) == label;
-            return !found;
-        });
-        return found;
-    }
-
-    /// The least distance between two points.
-    double nearest_gap() const {
-        double best = 4 * radius_ * radius_;
-        for (std::size_t i = 0; i < places_.size(); ++i)
-            grid_.visit_ball(to_point(places_[i]), std::sqrt(best), [&](int j, double square) {
-                if (static_cast<std::size_t>(j) != i) best = std::min(best, square);
-                return true;
-            });
-        return std::sqrt(best);
+        double ignored = 0;
+        return cloud_.nearest(place, label, reach, ignored) >= 0;
     }
 
     /// Symmetries of no more than a few holes.
@@ -243,23 +207,27 @@ private:
             if (s.type == SymmetryType::translation || s.type == SymmetryType::screw ||
                 s.type == SymmetryType::glide_reflection)
                 continue;
+            if (s.coverage < 0.5) continue;
             // A tolerance of the size of the gaps between points says nothing about their places.
-            if (s.deviation.max > 0.12 * gap_) continue;
-            Candidate c{k, map_of(s, middle_), std::max({1.5 * s.deviation.max, 2 * scene_.resolution}), {}};
+            if (s.deviation.max > 0.12 * cloud_.gap()) continue;
+            Candidate c{k,
+                        map_about(s.isometry, cloud_.middle()),
+                        std::max({1.5 * s.deviation.max, 2 * cloud_.scene().resolution}),
+                        {}};
             // Points of no orbit that stay nearly in place: noise moves them, too.
             constexpr double kShareOfGap = 0.08;
-            for (int i = 0; i < scene_.size(); ++i) {
-                const Vector3d& p = places_[static_cast<std::size_t>(i)];
+            for (int i = 0; i < cloud_.size(); ++i) {
+                const Vector3d& p = cloud_[i];
                 const double off = (c.map(p) - p).norm();
-                if (off <= kShareOfGap * gap_) c.slack = std::max(c.slack, off);
+                if (off <= kShareOfGap * cloud_.gap()) c.slack = std::max(c.slack, off);
             }
             for (const bool back : {false, true})
-                for (int i = 0; i < scene_.size(); ++i) {
-                    const Vector3d& p = places_[static_cast<std::size_t>(i)];
+                for (int i = 0; i < cloud_.size(); ++i) {
+                    const Vector3d& p = cloud_[i];
                     const Vector3d image =
                         back ? Vector3d(c.map.linear.transpose() * (p - c.map.shift)) : c.map(p);
-                    if (!point_near(image, scene_.label(i), 1.5 * c.slack))
-                        c.holes.emplace_back(image, scene_.label(i));
+                    if (!point_near(image, cloud_.label(i), 1.5 * c.slack))
+                        c.holes.emplace_back(image, cloud_.label(i));
                 }
             if (c.holes.size() <= 2 * most_slots()) candidates_.push_back(std::move(c));
         }
@@ -283,7 +251,7 @@ private:
 
     /// One point may always be lost; more only from many, or any set would be part of a larger one.
     std::size_t most_slots() const {
-        return std::max<std::size_t>(1, static_cast<std::size_t>(scene_.size()) / 8);
+        return std::max<std::size_t>(1, static_cast<std::size_t>(cloud_.size()) / 8);
     }
     bool slots_too_many() const { return slots_.size() > most_slots(); }
 
@@ -292,7 +260,7 @@ private:
         elements_.clear();
         members_.clear();
         slots_.clear();
-        tolerance_ = 2 * scene_.resolution;
+        tolerance_ = 2 * cloud_.scene().resolution;
         for (const Candidate& c : candidates_) {
             if (complete && !c.holes.empty()) continue;
             const double tolerance = std::max(tolerance_, c.slack);
@@ -311,7 +279,7 @@ private:
             add_element(c.map.linear);
             add_element(c.map.linear.transpose());
         }
-        if (scene_.dimension() == 3 && extent_[0] <= flatness()) {
+        if (cloud_.dimension() == 3 && extent_[0] <= flatness()) {
             // The plane of a flat set is a mirror that moves no point.
             const std::vector<Matrix3d> flat = elements_;
             const Matrix3d mirror = Matrix3d::Identity() - 2 * axes_.col(0) * axes_.col(0).transpose();
@@ -324,15 +292,15 @@ private:
     /// Points of a noisy plane or line lie so far off it.
     double flatness() const {
         constexpr double kShareOfGap = 0.03;
-        const bool exact = !candidates_.empty() && tolerance_ <= 4 * scene_.resolution;
-        return exact ? tolerance_ : std::max(tolerance_, kShareOfGap * gap_);
+        const bool exact = !candidates_.empty() && tolerance_ <= 4 * cloud_.scene().resolution;
+        return exact ? tolerance_ : std::max(tolerance_, kShareOfGap * cloud_.gap());
     }
 
+    /// Of the points, whose mean is the origin, and the slots.
     Vector3d center() const {
         Vector3d sum = Vector3d::Zero();
-        for (const Vector3d& p : places_) sum += p;
         for (const auto& [place, label] : slots_) sum += place;
-        return sum / static_cast<double>(places_.size() + slots_.size());
+        return sum / (cloud_.size() + static_cast<double>(slots_.size()));
     }
 
     /// Every element takes every point to a point or to an empty slot.
@@ -340,12 +308,12 @@ private:
         const Vector3d middle = center();
         const double reach = 3 * tolerance_;
         return std::all_of(elements_.begin(), elements_.end(), [&](const Matrix3d& m) {
-            for (int i = 0; i < scene_.size(); ++i) {
-                const Vector3d image = m * (places_[static_cast<std::size_t>(i)] - middle) + middle;
+            for (int i = 0; i < cloud_.size(); ++i) {
+                const Vector3d image = m * (cloud_[i] - middle) + middle;
                 const bool slot = std::any_of(slots_.begin(), slots_.end(), [&](const auto& s) {
-                    return s.second == scene_.label(i) && (s.first - image).norm() <= reach;
+                    return s.second == cloud_.label(i) && (s.first - image).norm() <= reach;
                 });
-                if (!slot && !point_near(image, scene_.label(i), reach)) return false;
+                if (!slot && !point_near(image, cloud_.label(i), reach)) return false;
             }
             return true;
         });
@@ -353,7 +321,7 @@ private:
 
     /// Noise moves the maps by so much that their products do not quite close.
     void add_element(const Matrix3d& m) {
-        const double same = std::clamp(6 * tolerance_ / radius_, 2 * kSameMap, 6 * kSameMap);
+        const double same = std::clamp(6 * tolerance_ / cloud_.radius(), 2 * kSameMap, 6 * kSameMap);
         for (const Matrix3d& e : elements_)
             if ((e - m).norm() < same) return;
         elements_.push_back(m);
@@ -371,7 +339,7 @@ private:
     }
 
     void name(PointGroup& group) const {
-        if (scene_.dimension() == 3 && extent_[1] <= flatness()) {
+        if (cloud_.dimension() == 3 && extent_[1] <= flatness()) {
             // All on one line: turns about it by any angle.
             const bool swaps = std::any_of(elements_.begin(), elements_.end(), [&](const Matrix3d& m) {
                 return (m * axes_.col(2)).dot(axes_.col(2)) < 0;
@@ -379,16 +347,16 @@ private:
             group.schoenflies = swaps ? "Dinfh" : "Cinfv";
             group.hermann_mauguin = swaps ? "inf/mm" : "inf m";
         } else {
-            const GroupName n = name_group(elements_, scene_.dimension());
+            const GroupName n = name_group(elements_, cloud_.dimension());
             group.schoenflies = n.schoenflies;
             group.hermann_mauguin = n.hermann_mauguin;
         }
-        group.center = to_point(middle_ + center());
+        group.center = to_point(cloud_.middle() + center());
     }
 
     void add_slots(Symmetry& s) const {
         for (const auto& [place, label] : slots_) {
-            const Vector3d slot = place + middle_;
+            const Vector3d slot = place + cloud_.middle();
             const bool known = std::any_of(s.missing.begin(), s.missing.end(), [&](const Point& p) {
                 return (to_vector(p) - slot).norm() <= 3 * tolerance_;
             });
@@ -396,13 +364,8 @@ private:
         }
     }
 
-    const PointScene& scene_;
+    const Cloud& cloud_;
     const std::vector<Symmetry>& symmetries_;
-    Vector3d middle_ = Vector3d::Zero();
-    std::vector<Vector3d> places_;
-    PointGrid grid_{{}};
-    double radius_ = 0;
-    double gap_ = 0;
     Vector3d extent_;
     Matrix3d axes_;
     double tolerance_ = 0;
@@ -414,8 +377,8 @@ private:
 
 }  // namespace
 
-PointGroup point_group(const PointScene& scene, std::vector<Symmetry>& symmetries) {
-    return GroupSearch(scene, symmetries).run(symmetries);
+PointGroup point_group(const Cloud& cloud, std::vector<Symmetry>& symmetries) {
+    return GroupSearch(cloud, symmetries).run(symmetries);
 }
 
 }  // namespace insym

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scene.hpp"
+#include "points/cloud.hpp"
 
 namespace insym {
 
@@ -21,6 +21,6 @@ GroupName name_group(const std::vector<Eigen::Matrix3d>& elements, int dimension
 /// The largest group of listed symmetries that take every point to a point or to an empty slot; C1 where
 /// there is none. The slots that complete the set are added to `missing` of the symmetries that need them.
 /// O(elements^2 n).
-PointGroup point_group(const PointScene& scene, std::vector<Symmetry>& symmetries);
+PointGroup point_group(const Cloud& cloud, std::vector<Symmetry>& symmetries);
 
 }  // namespace insym

@@ -41,6 +41,12 @@ bool Collection::explains(const Hypothesis& h) const {
     return false;
 }
 
+bool Collection::knows(const RigidMap& map, double radius) const {
+    return std::any_of(supports_.begin(), supports_.end(), [&](const Support& s) {
+        return (s.map.linear - map.linear).norm() * radius + (s.map.shift - map.shift).norm() <= s.tolerance;
+    });
+}
+
 int Collection::same(const Support& support) const {
     constexpr double kShare = 0.8;
     const auto size = static_cast<double>(support.links.size());

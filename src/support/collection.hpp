@@ -15,6 +15,10 @@ public:
     /// True if a support that is kept holds all the links that suggest this hypothesis, in one direction.
     bool explains(const Hypothesis& hypothesis) const;
 
+    /// True if a support that is kept moves no point of a ball of `radius` about the origin by more than its
+    /// tolerance otherwise than `map`.
+    bool knows(const RigidMap& map, double radius) const;
+
     /// Keeps a support; where one of the same links, or their inverses, is kept already, the more significant
     /// stays. False if nothing changed.
     bool add(Support support);

@@ -24,6 +24,8 @@ using Eigen::Vector3d;
 constexpr double kKept = 3;
 constexpr double kListed = 1;
 
+constexpr std::size_t kMostPairs = 300000;  // that vote together
+
 /// The largest tolerance worth looking at: there a scattered set has a point in one place of eight.
 double largest_reach(const PointScene& scene, const Significance& significance) {
     constexpr double kChance = 0.12;
@@ -35,23 +37,24 @@ double largest_reach(const PointScene& scene, const Significance& significance) 
 
 class Search {
 public:
-    Search(const PointScene& scene, const Significance& significance, RunMonitor& monitor)
-        : scene_(scene),
+    Search(const Cloud& cloud, const Significance& significance, RunMonitor& monitor)
+        : cloud_(cloud),
           significance_(significance),
           monitor_(monitor),
-          cloud_(scene),
-          gatherer_(cloud_, significance, largest_reach(scene, significance)) {}
+          gatherer_(cloud, significance, largest_reach(cloud.scene(), significance)) {}
 
     RobustResult run(TypeSet types) {
         const double reach = gatherer_.reach();
-        const std::size_t n = scene_.points.size();
-        // So many looks at a point for each source of hypotheses.
-        const auto budget = [&](double looks) {
-            return static_cast<std::size_t>(100 + looks / static_cast<double>(n));
+        const auto n = static_cast<std::size_t>(cloud_.size());
+        // So many hypotheses of each source, for 100 points; in a large set one costs little, as most are local,
+        // and what there is to find grows with the points.
+        const auto budget = [&](double at_100) {
+            const double share = static_cast<double>(n) / 100;
+            return static_cast<std::size_t>(40 + at_100 / (share * share));
         };
-        offer(frames(cloud_, Vector3d::Zero(), reach, budget(1e5)));
-        offer_votes(reach, budget(2e4), budget(6e4));
-        offer_groups(reach, budget(3e5), budget(1e5));
+        offer(frames(cloud_, Vector3d::Zero(), reach, budget(1000)));
+        offer_votes(reach, budget(600) + std::min<std::size_t>(n / 4, 500));
+        offer_groups(reach, {budget(3000) + n / 16, budget(1000) + n / 32, budget(200) + n / 8, 1e6});
         offer_roots();
         close_products();
         RobustResult result;
@@ -62,46 +65,95 @@ public:
     }
 
 private:
-    void offer_votes(double reach, std::size_t most_cells, std::size_t most) {
-        constexpr std::size_t kPairs = 300000;
-        std::vector<SymmetryType> types{
-            SymmetryType::translation, SymmetryType::mirror,
-            cloud_.dimension() == 2 ? SymmetryType::half_turn : SymmetryType::inversion};
+    /// Half-turns in the plane are inversions there.
+    std::vector<SymmetryType> types_voted() const {
+        return {SymmetryType::translation, SymmetryType::mirror,
+                cloud_.dimension() == 2 ? SymmetryType::half_turn : SymmetryType::inversion};
+    }
+
+    void offer_votes(double reach, std::size_t most) {
+        const std::vector<SymmetryType> types = types_voted();
+        const PointPairs pairs = spread_pairs(cloud_, kMostPairs);
         std::vector<std::vector<Hypothesis>> votes(types.size());
         monitor_.begin_stage("votes of pairs", types.size());
         parallel_for(types.size(),
-                     [&](std::size_t k) { votes[k] = vote(cloud_, types[k], reach, kPairs, most_cells); });
+                     [&](std::size_t k) { votes[k] = vote(cloud_, types[k], pairs, reach, most / 2); });
         for (const std::vector<Hypothesis>& v : votes) {
             offer(v, most);
             monitor_.advance();
         }
     }
 
+    /// What a group of points suggests.
+    struct Suggestions {
+        std::vector<std::vector<Hypothesis>> voted;
+        Agreed chains, half_turns;
+    };
+
+    /// How much is made of the groups together: each has its share.
+    struct GroupBudget {
+        std::size_t chains, half_turns, votes;
+        double looks;
+
+        /// What the groups from one share of the whole to another may spend.
+        GroupBudget between(double from, double to) const {
+            const auto part = [&](std::size_t whole) {
+                const auto upto = [&](double share) {
+                    return std::floor(share * static_cast<double>(whole));
+                };
+                return static_cast<std::size_t>(upto(to) - upto(from));
+            };
+            return {part(chains), part(half_turns), part(votes), (to - from) * looks};
+        }
+    };
+
+    Suggestions suggestions(const SearchGroup& group, double reach, const GroupBudget& budget, bool part) {
+        // So many candidates are kept for each that is tried: most of them say the same, or what was found.
+        constexpr std::size_t kSpare = 20, kLeast = 20000;  // to keep some costs little
+        const auto kept = [&](std::size_t tried) { return std::max(kLeast, kSpare * tried); };
+        Suggestions out;
+        if (monitor_.should_stop()) return out;
+        out.chains = agreeing_first(cloud_, chains(cloud_, group, reach, kept(budget.chains)));
+        out.half_turns =
+            agreeing_first(cloud_, half_turns(cloud_, group, reach, budget.looks, kept(budget.half_turns)));
+        if (!part) return out;
+        // The pairs of small classes have voted already.
+        const PointPairs pairs = pairs_within(group);
+        for (const SymmetryType type : types_voted())
+            out.voted.push_back(vote(cloud_, type, pairs, reach, budget.votes));
+        return out;
+    }
+
+    /// The more agree exactly, the less is meant by those that stand alone.
+    static std::size_t tries(const Agreed& found, std::size_t most) {
+        const std::size_t alone = std::max(most / 8, most - std::min(most, 4 * found.agreeing));
+        return std::min(most, found.agreeing + alone);
+    }
+
     /// A few groups at a time: the search for candidates needs no knowledge of what was found.
-    void offer_groups(double reach, std::size_t most_chains, std::size_t most_half_turns) {
-        constexpr std::size_t kGroup = 400, kAtATime = 16;
-        // So many candidates are kept for each that is tried: most of them say what was found already.
-        constexpr std::size_t kSpare = 20;
+    void offer_groups(double reach, const GroupBudget& budget) {
+        constexpr std::size_t kGroup = 512, kAtATime = 16;
         const std::vector<SearchGroup> groups = search_groups(cloud_, kGroup);
         monitor_.begin_stage("chains of points", groups.size());
-        std::vector<std::vector<Candidate>> found(2 * kAtATime);
+        std::vector<double> before{0};  // points in the groups before each
+        for (const SearchGroup& g : groups) before.push_back(before.back() + static_cast<double>(g.size()));
+        const auto budget_of = [&](std::size_t k) {
+            return budget.between(before[k] / before.back(), before[k + 1] / before.back());
+        };
+        // Where all pairs have voted, no group has more to say.
+        const bool parts = cloud_.size() * (cloud_.size() - 1.0) / 2 > kMostPairs;
+        std::vector<Suggestions> found(kAtATime);
         for (std::size_t first = 0; first < groups.size() && !monitor_.should_stop(); first += kAtATime) {
             const std::size_t count = std::min(kAtATime, groups.size() - first);
-            parallel_for(2 * count, [&](std::size_t k) {
-                const SearchGroup& group = groups[first + k / 2];
-                if (monitor_.should_stop())
-                    found[k].clear();
-                else if (k % 2 == 0)
-                    found[k] = chains(cloud_, group, reach, kSpare * most_chains);
-                else
-                    found[k] = half_turns(cloud_, group, reach, kSpare * most_half_turns);
+            parallel_for(count, [&](std::size_t k) {
+                found[k] = suggestions(groups[first + k], reach, budget_of(first + k), parts);
             });
-            for (std::size_t k = 0; k < 2 * count; ++k) {
-                // What is tried in all grows with the points looked at.
-                const std::size_t most = k % 2 == 0 ? most_chains : most_half_turns;
-                offer(found[k],
-                      20 + most * groups[first + k / 2].size() / static_cast<std::size_t>(cloud_.size()));
-                if (k % 2 == 1) monitor_.advance();
+            for (std::size_t k = 0; k < count; ++k) {
+                const GroupBudget most = budget_of(first + k);
+                for (const std::vector<Hypothesis>& v : found[k].voted) offer(v, most.votes);
+                offer(found[k].chains.candidates, tries(found[k].chains, most.chains));
+                offer(found[k].half_turns.candidates, tries(found[k].half_turns, most.half_turns));
+                monitor_.advance();
             }
         }
     }
@@ -119,7 +171,7 @@ private:
         std::vector<Hypothesis> block;
         for (std::size_t k = 0; k < suggestions.size() && tried_ < stop && !monitor_.should_stop();) {
             block.clear();
-            for (; k < suggestions.size() && block.size() < kBlock; ++k) {
+            for (; k < suggestions.size() && block.size() < std::min(kBlock, stop - tried_); ++k) {
                 Hypothesis h = hypothesis(suggestions[k]);
                 if (!collection_.explains(h)) block.push_back(std::move(h));
             }
@@ -143,10 +195,16 @@ private:
 
     /// What a found symmetry may be a power of: half and third steps, and turns of whole order.
     void offer_roots() {
-        std::vector<Hypothesis> roots;
+        constexpr std::size_t kMost = 100;
+        std::vector<const Support*> best;
         for (const Support& s : collection_.supports())
-            if (s.significance < -1) add_roots(s, roots);
-        if (roots.size() > 20000) roots.resize(20000);
+            if (s.significance < -1) best.push_back(&s);
+        std::stable_sort(best.begin(), best.end(), [](const Support* a, const Support* b) {
+            return a->significance < b->significance;
+        });
+        if (best.size() > kMost) best.resize(kMost);
+        std::vector<Hypothesis> roots;
+        for (const Support* s : best) add_roots(*s, roots);
         offer(roots);
     }
 
@@ -191,39 +249,46 @@ private:
         return static_cast<int>(std::count(in.begin(), in.end(), 1));
     }
 
-    /// Products of the symmetries of nearly the whole set, until there are no more: they form a group.
+    /// Of nearly the whole set, and such as some point can stay in place under: part of a finite group.
+    bool of_group(const Support& s) const {
+        return s.type != SymmetryType::translation && s.type != SymmetryType::screw &&
+               s.type != SymmetryType::glide_reflection && s.significance < kListed &&
+               5 * covered(s) >= 4 * cloud_.size();
+    }
+
+    /// Of any kind; what it is comes out when it is gathered.
+    Hypothesis product(const Support& a, const Support& b) const {
+        const RigidMap map = compose(a.map, b.map);
+        const bool improper = map.linear.determinant() < 0;
+        const bool plane = cloud_.dimension() == 2;
+        const SymmetryType type =
+            improper ? plane ? SymmetryType::glide_reflection : SymmetryType::rotation_reflection
+            : plane  ? SymmetryType::rotation
+                     : SymmetryType::screw;
+        return of_map(type, map, std::max(a.tolerance, b.tolerance));
+    }
+
+    /// Products of the symmetries of the whole set, until there are no more: they form a group.
     void close_products() {
         constexpr std::size_t kMostElements = 130;
         std::size_t done = 0;
         std::vector<std::size_t> whole;
         for (int round = 0; round < 4 && !monitor_.should_stop(); ++round) {
-            const std::size_t before = collection_.supports().size();
-            for (; done < collection_.supports().size(); ++done)
-                if (5 * covered(collection_.supports()[done]) >= 4 * cloud_.size() &&
-                    collection_.supports()[done].significance < kListed)
-                    whole.push_back(done);
+            const std::vector<Support>& all = collection_.supports();
+            const std::size_t before = all.size();
+            for (; done < all.size(); ++done)
+                if (of_group(all[done])) whole.push_back(done);
             if (whole.size() > kMostElements) break;
             std::vector<Hypothesis> products;
             for (const std::size_t a : whole)
                 for (const std::size_t b : whole) {
-                    const Support &first = collection_.supports()[a], &second = collection_.supports()[b];
-                    const RigidMap &f = first.map, &g = second.map;
-                    RigidMap product;
-                    product.linear = f.linear * g.linear;
-                    product.shift = f(g.shift);
-                    if ((product.linear - Eigen::Matrix3d::Identity()).norm() < 1e-3) continue;
-                    products.push_back(of_map(product.linear.determinant() < 0
-                                                  ? SymmetryType::rotation_reflection
-                                                  : SymmetryType::screw,
-                                              product, std::max(first.tolerance, second.tolerance)));
-                    if (cloud_.dimension() == 2)
-                        products.back().type = product.linear.determinant() < 0
-                                                   ? SymmetryType::glide_reflection
-                                                   : SymmetryType::rotation;
+                    Hypothesis h = product(all[a], all[b]);
+                    if ((h.map.linear - Eigen::Matrix3d::Identity()).norm() >= 1e-3 &&
+                        !collection_.knows(h.map, cloud_.radius()))
+                        products.push_back(std::move(h));
                 }
-            if (products.size() > 20000) break;
             offer(products);
-            if (collection_.supports().size() == before) break;
+            if (all.size() == before) break;
         }
     }
 
@@ -257,7 +322,7 @@ private:
             s.type = p.support.type;
             s.cycles = std::move(p.runs);
             s.significance = p.significance;
-            s.tolerance.min = spread(scene_, s.cycles, p.support.tolerance);
+            s.tolerance.min = spread(cloud_.scene(), s.cycles, deviation(p.support));
             s.tolerance.max = std::max(turns_ambiguous(p), s.tolerance.min);
             for (const Vector3d& place : p.missing) s.missing.push_back(to_point(place + cloud_.middle()));
         });
@@ -265,6 +330,14 @@ private:
         for (std::size_t k = 0; k < out.size(); ++k)
             if (keep[k] != 0) kept.push_back(std::move(out[k]));
         return kept;
+    }
+
+    /// Of the link that is met worst.
+    double deviation(const Support& s) const {
+        double worst = 0;
+        for (const auto& [from, to] : s.links)
+            worst = std::max(worst, (s.map(cloud_[from]) - cloud_[to]).squaredNorm());
+        return std::sqrt(worst);
     }
 
     /// How near the image of a point comes to a point that it does not belong to.
@@ -282,10 +355,9 @@ private:
         return best;
     }
 
-    const PointScene& scene_;
+    const Cloud& cloud_;
     const Significance& significance_;
     RunMonitor& monitor_;
-    Cloud cloud_;
     Gatherer gatherer_;
     Collection collection_;
     std::size_t tried_ = 0;
@@ -293,9 +365,9 @@ private:
 
 }  // namespace
 
-RobustResult detect_robust(const PointScene& scene, const Significance& significance, TypeSet types,
+RobustResult detect_robust(const Cloud& cloud, const Significance& significance, TypeSet types,
                            RunMonitor& monitor) {
-    return Search(scene, significance, monitor).run(types);
+    return Search(cloud, significance, monitor).run(types);
 }
 
 }  // namespace insym

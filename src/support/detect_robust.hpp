@@ -1,9 +1,9 @@
 // Method `robust`: symmetries judged as a whole (definitions, section 8).
 #pragma once
 
+#include "points/cloud.hpp"
 #include "ranking/significance.hpp"
 #include "run_monitor.hpp"
-#include "scene.hpp"
 
 namespace insym {
 
@@ -15,7 +15,7 @@ struct RobustResult {
 
 /// Hypotheses from pairs, chains and frames of points; the support of each; the best of those that rest on
 /// the same links. Memory linear in the points plus the output.
-RobustResult detect_robust(const PointScene& scene, const Significance& significance, TypeSet types,
+RobustResult detect_robust(const Cloud& cloud, const Significance& significance, TypeSet types,
                            RunMonitor& monitor);
 
 }  // namespace insym

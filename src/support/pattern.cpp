@@ -174,7 +174,7 @@ private:
         RigidMap power;
         for (const int i : run.points) {
             sum += power.linear.transpose() * (cloud_[i] - power.shift);
-            power = {exact_.linear * power.linear, exact_(power.shift)};
+            power = compose(exact_, power);
         }
         return sum / static_cast<double>(run.points.size());
     }
@@ -184,7 +184,7 @@ private:
         const double p = significance_.background().chance(1.5 * pattern_.support.tolerance);
         const int steps = std::min(kMostSteps, static_cast<int>(0.2 / std::max(p, 1e-9)));
         std::vector<char> reached(static_cast<std::size_t>(cloud_.size()), 0);
-        const RigidMap back{exact_.linear.transpose(), -(exact_.linear.transpose() * exact_.shift)};
+        const RigidMap back = inverse(exact_);
         const std::size_t runs = pattern_.runs.size();
         for (std::size_t r = 0; r < runs; ++r) {
             const Orbit& run = pattern_.runs[r];

@@ -15,10 +15,33 @@ using Eigen::Vector3d;
 
 /// next[i]: the point that i is carried to, or -1; square: how far off, squared.
 struct Gatherer::Linked {
+    explicit Linked(int n)
+        : next(static_cast<std::size_t>(n), -1),
+          square(static_cast<std::size_t>(n), 0),
+          owner(static_cast<std::size_t>(n), -1) {}
+
+    void clear() {
+        for (const int i : from) next[static_cast<std::size_t>(i)] = -1;
+        for (const int j : to) owner[static_cast<std::size_t>(j)] = -1;
+        from.clear();
+        to.clear();
+        count = looks = 0;
+    }
+
     std::vector<int> next;
     std::vector<double> square;
-    std::vector<int> owner;  // of each point: who is carried to it
+    std::vector<int> owner;     // of each point: who is carried to it
+    std::vector<int> from, to;  // ascending: those with an image; those that were owned
     int count = 0;
+    int looks = 0;  // points looked at
+};
+
+/// Where points are looked at: in a ball, or everywhere.
+struct Gatherer::Region {
+    Vector3d center = Vector3d::Zero();
+    double radius = std::numeric_limits<double>::infinity();
+
+    bool everywhere() const { return !(radius < std::numeric_limits<double>::infinity()); }
 };
 
 struct Gatherer::Judged {
@@ -38,6 +61,9 @@ bool improper_kind(SymmetryType type) {
     return type == SymmetryType::mirror || type == SymmetryType::inversion ||
            type == SymmetryType::glide_reflection || type == SymmetryType::rotation_reflection;
 }
+
+/// Points that stand for all of a large set.
+constexpr int kSample = 128;
 
 /// Links that are needed before a fit means something.
 int least_links(SymmetryType type) {
@@ -133,12 +159,11 @@ Gatherer::Gatherer(const Cloud& cloud, const Significance& significance, double 
         level *= std::numbers::sqrt2;
     }
     levels_.push_back(std::max(reach, cloud.scene().resolution));
-    gap_ = cloud.nearest_gap();
 }
 
 bool Gatherer::whole(const Support& support) const {
     constexpr double kShareOfGap = 0.08;
-    const double reach = std::max(kShareOfGap * gap_, cloud_.scene().resolution);
+    const double reach = std::max(kShareOfGap * cloud_.gap(), cloud_.scene().resolution);
     if (support.tolerance > reach) return false;
     std::vector<char> in(static_cast<std::size_t>(cloud_.size()), 0);
     for (const auto& [from, to] : support.links)
@@ -149,39 +174,45 @@ bool Gatherer::whole(const Support& support) const {
     return true;
 }
 
-void Gatherer::link(SymmetryType type, const RigidMap& map, double reach, const Vector3d* center,
-                    double radius, Linked& out) const {
-    const int n = cloud_.size();
-    const auto size = static_cast<std::size_t>(n);
-    out.next.assign(size, -1);
-    out.owner.assign(size, -1);
-    out.square.assign(size, 0);
-    out.count = 0;
-    for (int i = 0; i < n; ++i) {
-        const Vector3d& p = cloud_[i];
-        if (center != nullptr && (p - *center).squaredNorm() > radius * radius) continue;
+void Gatherer::link(SymmetryType type, const RigidMap& map, double reach, const Region& region,
+                    Linked& out) const {
+    out.clear();
+    const auto look = [&](int i) {
+        ++out.looks;
         double square = 0;
-        const int j = cloud_.nearest(map(p), cloud_.label(i), reach, square);
-        if (j < 0 || j == i) continue;
+        const int j = cloud_.nearest(map(cloud_[i]), cloud_.label(i), reach, square);
+        if (j < 0 || j == i) return;
         int& owner = out.owner[static_cast<std::size_t>(j)];
         if (owner >= 0) {
             // Both ways the nearest: the one that comes closer stays.
-            if (out.square[static_cast<std::size_t>(owner)] <= square) continue;
+            if (out.square[static_cast<std::size_t>(owner)] <= square) return;
             out.next[static_cast<std::size_t>(owner)] = -1;
             --out.count;
+        } else {
+            out.to.push_back(j);
         }
         owner = i;
         out.next[static_cast<std::size_t>(i)] = j;
         out.square[static_cast<std::size_t>(i)] = square;
+        out.from.push_back(i);
         ++out.count;
+    };
+    if (region.everywhere()) {
+        for (int i = 0; i < cloud_.size(); ++i) look(i);
+    } else {
+        cloud_.grid().visit_ball(to_point(region.center), region.radius, [&](int i, double) {
+            look(i);
+            return true;
+        });
+        std::sort(out.from.begin(), out.from.end());
     }
-    // A pair runs both ways, and nothing else does.
-    const bool pairs = is_pair_type(type);
-    for (int i = 0; i < n; ++i) {
+    // A pair runs both ways, and nothing else does; a ball may hold one end alone.
+    const bool pairs = is_pair_type(type), half = !region.everywhere();
+    for (const int i : out.from) {
         const int j = out.next[static_cast<std::size_t>(i)];
         if (j < 0) continue;
         const bool back = out.next[static_cast<std::size_t>(j)] == i;
-        if (pairs ? back || (center != nullptr) : !back) continue;
+        if (pairs ? back || half : !back) continue;
         out.next[static_cast<std::size_t>(i)] = -1;
         --out.count;
         if (!pairs) {
@@ -192,28 +223,28 @@ void Gatherer::link(SymmetryType type, const RigidMap& map, double reach, const 
 }
 
 Gatherer::Judged Gatherer::judge(SymmetryType type, const Linked& linked, double reach) const {
-    const std::size_t n = linked.next.size();
     std::vector<int> hits(levels_.size(), 0);
     const auto level_of = [&](double square) {
         const double distance = std::sqrt(square);
         return static_cast<std::size_t>(std::lower_bound(levels_.begin(), levels_.end() - 1, distance) -
                                         levels_.begin());
     };
-    std::vector<char> seen(n, 0);
-    for (std::size_t i = 0; i < n; ++i)
-        if (linked.next[i] >= 0) ++hits[level_of(linked.square[i])];
+    const auto next = [&](int i) { return linked.next[static_cast<std::size_t>(i)]; };
+    const auto square = [&](int i) { return linked.square[static_cast<std::size_t>(i)]; };
+    for (const int i : linked.from)
+        if (next(i) >= 0) ++hits[level_of(square(i))];
     // The last link of a closed orbit says nothing new.
-    for (std::size_t i = 0; i < n; ++i) {
-        if (seen[i] != 0 || linked.next[i] < 0) continue;
+    std::vector<char> seen(linked.next.size(), 0);
+    for (const int start : linked.from) {
+        if (seen[static_cast<std::size_t>(start)] != 0 || next(start) < 0) continue;
         double worst = 0;
-        std::size_t k = i;
+        int i = start;
         do {
-            seen[k] = 1;
-            worst = std::max(worst, linked.square[k]);
-            const int next = linked.next[k];
-            k = next < 0 ? n : static_cast<std::size_t>(next);
-        } while (k < n && seen[k] == 0 && linked.next[k] >= 0);
-        if (k == i) --hits[level_of(worst)];
+            seen[static_cast<std::size_t>(i)] = 1;
+            worst = std::max(worst, square(i));
+            i = next(i);
+        } while (seen[static_cast<std::size_t>(i)] == 0 && next(i) >= 0);
+        if (i == start) --hits[level_of(worst)];
     }
     Judged best;
     std::vector<Judged> all;
@@ -238,22 +269,22 @@ Gatherer::Judged Gatherer::judge(SymmetryType type, const Linked& linked, double
 /// The links of no more than `tolerance`; and those of up to twice as much that alone keep an orbit from
 /// closing: they count for nothing, but without them the last step of a ring would be lost to noise.
 std::vector<std::pair<int, int>> Gatherer::links_within(const Linked& linked, double tolerance) {
-    const std::size_t n = linked.next.size();
     const double limit = tolerance * tolerance * (1 + 1e-9);
-    std::vector<char> in(n, 0), closing(n, 0);
-    for (std::size_t i = 0; i < n; ++i) in[i] = linked.next[i] >= 0 && linked.square[i] <= limit ? 1 : 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        if (in[i] != 0 || linked.next[i] < 0 || linked.square[i] > 4 * limit) continue;
-        auto k = static_cast<std::size_t>(linked.next[i]);
-        while (k != i && in[k] != 0) k = static_cast<std::size_t>(linked.next[k]);
-        if (k == i) closing[i] = 1;
-    }
+    const auto next = [&](int i) { return linked.next[static_cast<std::size_t>(i)]; };
+    const auto square = [&](int i) { return linked.square[static_cast<std::size_t>(i)]; };
+    const auto in = [&](int i) { return next(i) >= 0 && square(i) <= limit; };
+    const auto closes = [&](int i) {
+        if (next(i) < 0 || square(i) > 4 * limit) return false;
+        int k = next(i);
+        while (k != i && in(k)) k = next(k);
+        return k == i;
+    };
     std::vector<std::pair<int, int>> links;
-    for (std::size_t i = 0; i < n; ++i)
-        if (in[i] != 0 || closing[i] != 0) links.emplace_back(static_cast<int>(i), linked.next[i]);
+    links.reserve(linked.from.size());
+    for (const int i : linked.from)
+        if (in(i) || closes(i)) links.emplace_back(i, next(i));
     return links;
 }
-
 RigidMap Gatherer::refit(SymmetryType type, const std::vector<std::pair<int, int>>& pairs,
                          const RigidMap& old) const {
     std::vector<Link> links;
@@ -269,67 +300,87 @@ RigidMap Gatherer::refit(SymmetryType type, const std::vector<std::pair<int, int
     return map;
 }
 
-/// A hypothesis from near points is inaccurate far away: refit it on twice as far a neighbourhood at a time.
-void Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map) const {
-    if (!(h.radius > 0) || h.type == SymmetryType::translation || h.type == SymmetryType::inversion) return;
-    Linked linked;
-    const double far = cloud_.radius() + h.center.norm();
-    double radius = 2 * h.radius;
-    while (radius < far) {
-        link(h.type, map, reach, &h.center, radius, linked);
-        radius *= 2;
-        if (linked.count < least_links(h.type)) continue;
-        const Judged judged = judge(h.type, linked, reach);
-        map = refit(h.type, links_within(linked, judged.tolerance), map);
-    }
+/// How many of a sample of all points are carried to points, beyond twice what chance gives.
+double Gatherer::sampled(const Hypothesis& h, const RigidMap& map, double reach) const {
+    const int n = cloud_.size();
+    int hits = 0;
+    for (int k = 0; k < kSample; ++k)
+        hits += carries(h, map, static_cast<int>(std::int64_t{k} * n / kSample), reach) ? 1 : 0;
+    return hits - 2 * kSample * significance_.background().chance(reach);
+}
+
+/// A point that does not suggest the hypothesis itself.
+bool Gatherer::carries(const Hypothesis& h, const RigidMap& map, int i, double reach) const {
+    double square = 0;
+    const int j = cloud_.nearest(map(cloud_[i]), cloud_.label(i), reach, square);
+    if (j < 0 || j == i) return false;
+    const bool own = std::find(h.from.begin(), h.from.end(), i) != h.from.end() ||
+                     (is_pair_type(h.type) && std::find(h.to.begin(), h.to.end(), i) != h.to.end());
+    return !own;
 }
 
 /// A cheap look first: one more link near the points of the hypothesis, or more of a sample of all than
 /// chance would link. Most hypotheses are a chance and end here.
 bool Gatherer::promising(const Hypothesis& h, double reach) const {
-    constexpr int kSample = 128;
-    const int n = cloud_.size();
-    if (n <= kSample || h.from[0] < 0) return true;
-    const auto own = [&](int i) {
-        return std::find(h.from.begin(), h.from.end(), i) != h.from.end() ||
-               (is_pair_type(h.type) && std::find(h.to.begin(), h.to.end(), i) != h.to.end());
-    };
-    const auto linked = [&](int i) {
-        double square = 0;
-        const int j = cloud_.nearest(h.map(cloud_[i]), cloud_.label(i), reach, square);
-        return j >= 0 && j != i && !own(i);
-    };
-    const double near = 4 * h.radius * h.radius;
-    for (int i = 0; i < n; ++i)
-        if ((cloud_[i] - h.center).squaredNorm() <= near && linked(i)) return true;
-    int hits = 0;
-    for (int k = 0; k < kSample; ++k) hits += linked(static_cast<int>(std::int64_t{k} * n / kSample)) ? 1 : 0;
-    return hits > 2 * kSample * significance_.background().chance(reach);
+    if (cloud_.size() <= kSample || h.from[0] < 0) return true;
+    int looks = 0;
+    bool near = false;
+    cloud_.grid().visit_ball(to_point(h.center), 2 * h.radius, [&](int i, double) {
+        near = carries(h, h.map, i, reach);
+        return !near && ++looks < kSample;
+    });
+    return near || sampled(h, h.map, reach) > 0;
 }
 
-std::optional<Support> Gatherer::settle(SymmetryType type, RigidMap map, double reach, double worst) const {
+/// A hypothesis from near points is inaccurate far away: refit it on twice as far a neighbourhood at a time.
+/// In a large set most end within one: where a neighbourhood has no more links than its half, nor a sample of
+/// all points, but by chance, nothing farther off is looked at.
+Gatherer::Region Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map, Linked& linked) const {
+    constexpr int kFew = 300;  // to look at so many is cheap
+    constexpr double kSure = 4;
+    const bool large = cloud_.size() > kFew;
+    const bool exact = h.type == SymmetryType::translation || h.type == SymmetryType::inversion;
+    if (!(h.radius > 0) || (exact && !large)) return {};
+    const double far = cloud_.radius() + h.center.norm();
+    Region region{h.center, 2 * h.radius};
+    const double chance = 2 * significance_.background().chance(reach);
+    int before = -1;
+    for (; region.radius < far; region.radius *= 2) {
+        link(h.type, map, reach, region, linked);
+        const bool ended = before >= 0 && linked.count - before <= chance * linked.looks;
+        if (large && ended && sampled(h, map, reach) < kSure) return region;
+        before = linked.count;
+        if (linked.count < least_links(h.type)) continue;
+        const Judged judged = judge(h.type, linked, reach);
+        map = refit(h.type, links_within(linked, judged.tolerance), map);
+    }
+    return {};
+}
+
+std::optional<Support> Gatherer::settle(SymmetryType type, RigidMap map, double reach, double worst,
+                                        const Region& region, Linked& linked) const {
     constexpr int kRounds = 5;
-    Linked linked;
-    std::vector<int> last;
+    std::vector<std::pair<int, int>> last;
     Support best;
     best.type = type;
     best.map = map;
     best.significance = 1e9;
     for (int round = 0; round < kRounds; ++round) {
-        link(type, map, reach, nullptr, 0, linked);
+        link(type, map, reach, region, linked);
         const Judged judged = judge(type, linked, reach);
+        std::vector<std::pair<int, int>> links = links_within(linked, judged.wide);
         if (judged.significance < best.significance) {
             best.type = type;
             best.map = map;
             best.tolerance = judged.wide;
             best.significance = judged.significance;
             best.hits = judged.hits;
-            best.links = links_within(linked, judged.wide);
+            best.links = links;
         }
         // What chance alone would do is not worth another look.
-        if (judged.significance > worst + 4 || linked.next == last) break;
-        last = linked.next;
-        const RigidMap better = refit(type, links_within(linked, judged.wide), map);
+        if (judged.significance > worst + 4 || links == last) break;
+        const RigidMap better = refit(type, links, map);
+        last = std::move(links);
         if ((better.linear - map.linear).norm() * cloud_.radius() + (better.shift - map.shift).norm() <
             1e-3 * cloud_.scene().resolution)
             break;
@@ -348,11 +399,14 @@ std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double wor
     const bool central = hypothesis.from[0] < 0;
     const double kept = central ? std::numeric_limits<double>::infinity() : worst;
     RigidMap map = hypothesis.map;
-    grow(hypothesis, near, map);
-    std::optional<Support> best = settle(hypothesis.type, map, near, kept + 3);
+    Linked linked(cloud_.size());
+    const Region region = grow(hypothesis, near, map, linked);
+    std::optional<Support> best = settle(hypothesis.type, map, near, kept + 3, region, linked);
     if (!best) return std::nullopt;
-    if (near < reach()) {
-        const auto wider = settle(best->type, best->map, reach(), kept + 3);
+    const bool few = cloud_.size() <= 2 * kSample;
+    if (near < reach() &&
+        (few || sampled(hypothesis, best->map, reach()) > sampled(hypothesis, best->map, near))) {
+        const auto wider = settle(best->type, best->map, reach(), kept + 3, region, linked);
         if (wider && wider->significance < best->significance) best = wider;
     }
     Vector3d center = Vector3d::Zero();
@@ -368,7 +422,7 @@ std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double wor
     }
     for (const auto& [type, plain] :
          simpler_kinds(best->type, best->map, center, radius, slack, cloud_.dimension())) {
-        const auto other = settle(type, plain, reach(), kept);
+        const auto other = settle(type, plain, reach(), kept, region, linked);
         if (other && worth(*other, cloud_.dimension()) <= worth(*best, cloud_.dimension())) best = other;
     }
     if (best->links.empty()) return std::nullopt;

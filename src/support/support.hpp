@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "hypotheses/hypothesis.hpp"
+#include "points/cloud.hpp"
 #include "ranking/significance.hpp"
-#include "support/cloud.hpp"
 
 namespace insym {
 
@@ -47,20 +47,22 @@ public:
 private:
     struct Linked;
     struct Judged;
-    void link(SymmetryType type, const RigidMap& map, double reach, const Eigen::Vector3d* center,
-              double radius, Linked& out) const;
+    struct Region;
+    void link(SymmetryType type, const RigidMap& map, double reach, const Region& region, Linked& out) const;
     Judged judge(SymmetryType type, const Linked& linked, double reach) const;
     static std::vector<std::pair<int, int>> links_within(const Linked& linked, double tolerance);
     RigidMap refit(SymmetryType type, const std::vector<std::pair<int, int>>& pairs,
                    const RigidMap& old) const;
-    std::optional<Support> settle(SymmetryType type, RigidMap map, double reach, double worst) const;
-    void grow(const Hypothesis& hypothesis, double reach, RigidMap& map) const;
+    std::optional<Support> settle(SymmetryType type, RigidMap map, double reach, double worst,
+                                  const Region& region, Linked& linked) const;
+    Region grow(const Hypothesis& hypothesis, double reach, RigidMap& map, Linked& linked) const;
+    bool carries(const Hypothesis& hypothesis, const RigidMap& map, int point, double reach) const;
+    double sampled(const Hypothesis& hypothesis, const RigidMap& map, double reach) const;
     bool promising(const Hypothesis& hypothesis, double reach) const;
 
     const Cloud& cloud_;
     const Significance& significance_;
     std::vector<double> levels_;
-    double gap_ = 0;  // between the two nearest points
 };
 
 /// The kinds that `map` is within `slack` of, over a ball of `radius` about `center`; the map as that kind.

@@ -36,10 +36,6 @@ RigidMap operator*(const RigidMap& a, const RigidMap& b) {
     return {a.linear * b.linear, a.linear * b.shift + a.shift};
 }
 
-RigidMap inverse(const RigidMap& map) {
-    return {map.linear.transpose(), -(map.linear.transpose() * map.shift)};
-}
-
 Vector3d random_vector(int dimension, double size, Random& random) {
     Vector3d v = Vector3d::Zero();
     for (int i = 0; i < dimension; ++i) v[i] = uniform(random, -size, size);

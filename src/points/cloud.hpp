@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "isometry/fit.hpp"
@@ -24,8 +25,10 @@ public:
     const PointScene& scene() const { return scene_; }
     const PointGrid& grid() const { return grid_; }
 
-    /// The least distance between two points.
-    double nearest_gap() const;
+    double gap() const { return gap_; }  ///< the least distance between two points
+
+    /// Ascending, of the nearest other points of its label; what there is not stays as it is.
+    void nearest_distances(int i, std::span<double> out) const;
 
     /// The nearest point to `place` with this label within `reach`, or -1; `square` is its distance squared.
     int nearest(const Eigen::Vector3d& place, int label, double reach, double& square) const;
@@ -34,6 +37,7 @@ private:
     const PointScene& scene_;
     Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
     double radius_ = 0;
+    double gap_ = 0;
     std::vector<Eigen::Vector3d> points_;
     PointGrid grid_;
 };

@@ -1,4 +1,4 @@
-#include "support/cloud.hpp"
+#include "points/cloud.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,16 +27,29 @@ Cloud::Cloud(const PointScene& scene) : scene_(scene), middle_(mean_of(scene)), 
         points_.emplace_back(to_vector(scene.position(i)) - middle_);
         radius_ = std::max(radius_, points_.back().norm());
     }
-}
-
-double Cloud::nearest_gap() const {
-    double best = 4 * radius_ * radius_;
+    double least = 4 * radius_ * radius_;
     for (int i = 0; i < size(); ++i)
-        grid_.visit_ball(to_point((*this)[i]), std::sqrt(best), [&](int j, double square) {
-            if (j != i) best = std::min(best, square);
+        grid_.visit_ball(to_point((*this)[i]), std::sqrt(least), [&](int j, double square) {
+            if (j != i) least = std::min(least, square);
             return true;
         });
-    return std::sqrt(best);
+    gap_ = std::sqrt(least);
+}
+
+void Cloud::nearest_distances(int i, std::span<double> out) const {
+    std::vector<double> squares;
+    // A ball that holds the number asked for in a set that is spread evenly, and then twice as far at a time.
+    double reach = radius_ * std::cbrt(static_cast<double>(out.size()) / size());
+    for (; squares.size() < out.size() && reach < 4 * radius_; reach *= 2) {
+        squares.clear();
+        grid_.visit_ball(to_point((*this)[i]), reach, [&](int j, double square) {
+            if (j != i && label(j) == label(i)) squares.push_back(square);
+            return true;
+        });
+    }
+    const std::size_t count = std::min(squares.size(), out.size());
+    std::partial_sort(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(count), squares.end());
+    for (std::size_t k = 0; k < count; ++k) out[k] = std::sqrt(squares[k]);
 }
 
 int Cloud::nearest(const Eigen::Vector3d& place, int label, double reach, double& square) const {

@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <unordered_map>
+
+#include "hypotheses/generators.hpp"
+
+namespace insym {
+namespace {
+
+using Eigen::Vector3d;
+
+/// An isometry or its inverse, as the cells that the images of two points outside the set fall in.
+std::uint64_t key_of(const RigidMap& map, SymmetryType type, double radius, double cell) {
+    const Vector3d first = radius * Vector3d(0.31, 0.74, 0.597),
+                   second = radius * Vector3d(-0.69, 0.21, -0.69);
+    const auto back = [&](const Vector3d& p) -> Vector3d { return map.linear.transpose() * (p - map.shift); };
+    std::array<Vector3d, 2> images{map(first), map(second)};
+    const std::array<Vector3d, 2> inverse{back(first), back(second)};
+    // A direction that no part is likely to be aligned with says which of the two it is.
+    const Vector3d askew(0.6120, 0.3532, 0.7075);
+    if ((images[0] - inverse[0]).dot(askew) < 0) images = inverse;
+    auto key = static_cast<std::uint64_t>(type);
+    for (const Vector3d& image : images)
+        for (const double x : image) {
+            key ^= static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / cell)));
+            key *= 0x9E3779B97F4A7C15ULL;
+            key ^= key >> 29U;
+        }
+    return key;
+}
+
+}  // namespace
+
+Agreed agreeing_first(const Cloud& cloud, const std::vector<Candidate>& candidates) {
+    constexpr double kCell = 64, kExact = 16;  // resolutions
+    const double resolution = cloud.scene().resolution;
+    struct Voted {
+        std::size_t first;
+        int votes;
+    };
+    std::vector<Voted> all;
+    std::unordered_map<std::uint64_t, std::size_t> known;
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+        const Hypothesis h = hypothesis_of(cloud, candidates[k]);
+        if (h.off <= kExact * resolution) {
+            const auto [place, is_new] =
+                known.try_emplace(key_of(h.map, h.type, cloud.radius(), kCell * resolution), all.size());
+            if (!is_new) {
+                ++all[place->second].votes;
+                continue;
+            }
+        }
+        all.push_back({k, 1});
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Voted& a, const Voted& b) { return a.votes > b.votes; });
+    Agreed out;
+    out.candidates.reserve(all.size());
+    for (const Voted& v : all) {
+        out.candidates.push_back(candidates[v.first]);
+        if (v.votes > 1) ++out.agreeing;
+    }
+    return out;
+}
+
+}  // namespace insym
