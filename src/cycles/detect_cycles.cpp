@@ -323,9 +323,7 @@ bool Expansion::resolve_open(std::span<const int> chain, double tolerance, Chain
 /// C3 by extension, then the types. True if a cycle came out. Each longer chain met on the way
 /// would come to the same end, so one answer serves them all: passed_.
 bool Expansion::become_cycle(std::span<const int> chain, double tolerance) {
-    longer_.assign(chain.begin(), chain.end());
-    if (longer_.front() > longer_.back()) std::reverse(longer_.begin(), longer_.end());
-    extended_.assign(longer_);
+    extended_.assign(chain);
     while (extend(tolerance)) {
         const double closed = oracle_.closed_tolerance(extended_);
         if (closed <= scene_.max_tolerance && oracle_.unambiguous(extended_.points(), true, closed))
@@ -356,9 +354,12 @@ bool Expansion::keep(std::span<const int> sequence, bool closed, double toleranc
 }
 
 /// C3: extended_ takes the point of least E_min at either end that keeps C1 and C2; ties by the longer
-/// sequence.
+/// sequence, in the direction in which the chain itself comes before its reverse: what is added depends on
+/// the chain alone, never on how it was come by.
 bool Expansion::extend(double& tolerance) {
     const auto points = extended_.points();
+    const End head = points.front() < points.back() ? End::left : End::right;
+    const int first = std::min(points.front(), points.back());
     extensions_.clear();
     for (const End end : {End::left, End::right}) {
         oracle_.candidates(extended_, end, candidates_);
@@ -368,7 +369,7 @@ bool Expansion::extend(double& tolerance) {
         if (x.candidate.tolerance != y.candidate.tolerance)
             return x.candidate.tolerance < y.candidate.tolerance;
         if (x.end == y.end) return x.candidate.point < y.candidate.point;
-        return x.end == End::left ? x.candidate.point < points.front() : points.front() < y.candidate.point;
+        return x.end == head ? x.candidate.point < first : first < y.candidate.point;
     });
     for (const auto& [candidate, end] : extensions_) {
         longer_.assign(points.begin(), points.end());
