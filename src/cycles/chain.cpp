@@ -69,7 +69,7 @@ namespace {
 
 /// Most sequences are this short; their orbits are simply counted again for each question, in loops of known
 /// length.
-constexpr std::size_t kShortSequence = 7;
+constexpr std::size_t kShortSequence = 8;
 
 /// The points of a sequence, but for q in the place `at`, if that is one.
 struct Replaced {
@@ -111,6 +111,8 @@ ToleranceInterval short_interval(const Distances& distances, std::span<const int
             return interval_of<5, kClosed>(distances, points.data(), replaced, floor, limit);
         case 6:
             return interval_of<6, kClosed>(distances, points.data(), replaced, floor, limit);
+        case 7:
+            return interval_of<7, kClosed>(distances, points.data(), replaced, floor, limit);
         default:
             return interval_of<kShortSequence, kClosed>(distances, points.data(), replaced, floor, limit);
     }
@@ -329,10 +331,6 @@ void ChainOracle::collect_extremes(std::span<const int> points, bool closed) {
 }
 
 bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double eps) {
-    if (points.size() > kShortSequence) {
-        collect_extremes(points, closed);
-        left_out_ = points.size();
-    }
     const std::size_t c = points.size();
     const auto place_of = [&](int p) {
         std::size_t place = c;
@@ -340,10 +338,15 @@ bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double e
         return place;
     };
     // What could be replaced the last time often can again, by the same point: most chains end here.
+    extremes_.clear();
     const std::size_t last = place_of(replaced_);
     if (last < c && scene_.label(replaced_by_) == scene_.label(replaced_) &&
         fits_in_place(points, closed, last, replaced_by_, eps))
         return false;
+    if (c > kShortSequence) {
+        collect_extremes(points, closed);
+        left_out_ = c;
+    }
     // From the ends inwards: there the distances say least.
     for (std::size_t k = 0; k < c; ++k)
         if (replaceable(points, closed, k % 2 == 0 ? k / 2 : c - 1 - k / 2, eps)) return false;
@@ -427,6 +430,11 @@ ToleranceInterval ChainOracle::long_interval_with(std::span<const int> points, b
     const auto d = scene_.distances.row(q);
     const std::size_t c = points.size();
     const auto to = [&](std::size_t k) { return d[static_cast<std::size_t>(points[k])]; };
+    if (extremes_.empty()) {  // only one point is asked so far
+        replaced_sequence_.assign(points.begin(), points.end());
+        replaced_sequence_[at] = q;
+        return interval(replaced_sequence_, closed);
+    }
     if (at != left_out_) leave_out(c, closed, at);
     spans_ = rest_;
     for (std::size_t r = 1; r <= rest_.size(); ++r) {

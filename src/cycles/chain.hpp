@@ -121,7 +121,8 @@ private:
     Fourths::List fourths_scratch_;
     std::vector<int> inwards_;  // the points of a chain from an end inwards
     std::vector<Span> spans_;
-    std::vector<Extremes> extremes_;
+    std::vector<Extremes> extremes_;  // of the sequence at hand, once they are asked for
+    std::vector<int> replaced_sequence_;
     std::size_t left_out_ = 0;  // the place of a point
     std::vector<Span> rest_;    // the orbits without the distances of that point
     int replaced_ = -1;         // the point that could be replaced the last time
