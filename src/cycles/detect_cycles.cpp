@@ -1,6 +1,7 @@
 #include "cycles/detect_cycles.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <limits>
 #include <optional>
@@ -78,7 +79,7 @@ public:
 private:
     template <class Visit>
     void visit_seeds(int apex, Visit visit);
-    bool expand_four(std::span<const int> four, double tolerance);
+    bool expand_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links);
     using Ends = std::pair<Candidate, Candidate>;  // the best candidates at the left and at the right end
     bool follow_path(double tolerance, std::optional<Ends> ends = {});
     Ends best_ends(double least, double limit);
@@ -165,13 +166,14 @@ void Expansion::visit_seeds(int apex, Visit visit) {
 
 void Expansion::expand_fours(int apex) {
     const auto expand = [&](int a, int c) {
-        const auto fourths = fourths_.of(a, apex, c, list_);
         fours_.clear();
-        for (const Candidate& d : fourths)
-            if (a < d.point) fours_.push_back(d);
+        for (const Candidate* d = fourths_.of(a, apex, c, list_); d->point >= 0; ++d)
+            if (a < d->point) fours_.push_back(*d);
+        if (fours_.empty()) return;
+        const SeedLink backwards = fourths_.link(c, apex, a);
         for (const Candidate& d : fours_) {
             const int four[] = {a, apex, c, d.point};
-            if (expand_four(four, d.tolerance)) continue;
+            if (expand_four(four, d.tolerance, {backwards, d.next})) continue;
             failed_.add(a, apex, c);
             failed_.add(d.point, c, apex);
         }
@@ -198,8 +200,8 @@ void Expansion::resolve_seeds(int apex) {
 
 /// In 3D also branches over the best fifth point at either end on each side of the plane of the three
 /// points there. True if every branch found a cycle, be it the chain of four itself.
-bool Expansion::expand_four(std::span<const int> four, double tolerance) {
-    chain_.assign(four);
+bool Expansion::expand_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links) {
+    chain_.assign(four, links);
     const Chain::Saved here = chain_.saved();
     const ChainOracle::Sides lefts = oracle_.best_on_sides(chain_, End::left, tolerance);
     const ChainOracle::Sides rights = oracle_.best_on_sides(chain_, End::right, tolerance);
@@ -214,7 +216,7 @@ bool Expansion::expand_four(std::span<const int> four, double tolerance) {
         for (const Candidate& fifth : end == End::left ? lefts : rights) {
             if (fifth.point < 0) continue;
             chain_.restore(here);
-            chain_.add(fifth.point, end);
+            chain_.add(fifth, end);
             if (!follow_path(fifth.tolerance) && !resolve_open(four, tolerance)) found = false;
         }
     return found;
@@ -259,7 +261,7 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
         const End to = better_end(left, right);
         path_.push_back({id, to, tolerance});
         const Candidate& next = to == End::right ? right : left;
-        chain_.add(next.point, to);
+        chain_.add(next, to);
         tolerance = next.tolerance;
     }
     // Back along the path, each chain a window of the last.
@@ -286,10 +288,10 @@ bool Expansion::follow_both(const Candidate& left, const Candidate& right) {
     memo_.prefetch(chain_.fingerprint_with(right.point, End::right));
     memo_.prefetch(chain_.fingerprint_with(left.point, End::left));
     const Chain::Saved here = chain_.saved();
-    chain_.add(right.point, End::right);
+    chain_.add(right, End::right);
     const bool found = follow_path(right.tolerance);
     chain_.restore(here);
-    chain_.add(left.point, End::left);
+    chain_.add(left, End::left);
     const bool found_left = follow_path(left.tolerance);
     chain_.restore(here);
     return found && found_left;
@@ -375,7 +377,7 @@ bool Expansion::extend(double& tolerance) {
         longer_.assign(points.begin(), points.end());
         longer_.insert(end == End::left ? longer_.begin() : longer_.end(), candidate.point);
         if (!oracle_.unambiguous(longer_, false, candidate.tolerance)) continue;
-        extended_.add(candidate.point, end);
+        extended_.add(candidate, end);
         tolerance = candidate.tolerance;
         return true;
     }
