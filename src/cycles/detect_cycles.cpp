@@ -82,6 +82,7 @@ private:
     bool expand_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links);
     using Ends = std::pair<Candidate, Candidate>;  // the best candidates at the left and at the right end
     bool follow_path(double tolerance, std::optional<Ends> ends = {});
+    bool follow_branch(const Candidate& next, End end);
     Ends best_ends(double least, double limit);
     End better_end(const Candidate& left, const Candidate& right) const;
     bool follow_both(const Candidate& left, const Candidate& right);
@@ -216,10 +217,17 @@ bool Expansion::expand_four(std::span<const int> four, double tolerance, std::ar
         for (const Candidate& fifth : end == End::left ? lefts : rights) {
             if (fifth.point < 0) continue;
             chain_.restore(here);
-            chain_.add(fifth, end);
-            if (!follow_path(fifth.tolerance) && !resolve_open(four, tolerance)) found = false;
+            if (!follow_branch(fifth, end) && !resolve_open(four, tolerance)) found = false;
         }
     return found;
+}
+
+/// The path of chain_ with `next` at `end`; chain_ does not grow where that is known.
+bool Expansion::follow_branch(const Candidate& next, End end) {
+    const Answer known = memo_.path(chain_.fingerprint_with(next.point, end));
+    if (known != Answer::unknown) return known == Answer::yes;
+    chain_.add(next, end);
+    return follow_path(next.tolerance);
 }
 
 /// From chain_ on, with E_min `tolerance` and the best candidates `ends`, if known: adds the point of least
@@ -288,11 +296,9 @@ bool Expansion::follow_both(const Candidate& left, const Candidate& right) {
     memo_.prefetch(chain_.fingerprint_with(right.point, End::right));
     memo_.prefetch(chain_.fingerprint_with(left.point, End::left));
     const Chain::Saved here = chain_.saved();
-    chain_.add(right, End::right);
-    const bool found = follow_path(right.tolerance);
+    const bool found = follow_branch(right, End::right);
     chain_.restore(here);
-    chain_.add(left, End::left);
-    const bool found_left = follow_path(left.tolerance);
+    const bool found_left = follow_branch(left, End::left);
     chain_.restore(here);
     return found && found_left;
 }
