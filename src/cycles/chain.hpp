@@ -63,7 +63,8 @@ public:
         int operator[](std::ptrdiff_t k) const { return first[k * step]; }
     };
     Inwards from(End end) const {
-        return end == End::right ? Inwards{buffer_.data() + end_ - 1, -1} : Inwards{buffer_.data() + begin_, 1};
+        return end == End::right ? Inwards{buffer_.data() + end_ - 1, -1}
+                                 : Inwards{buffer_.data() + begin_, 1};
     }
     int from(End end, int k) const { return from(end)[k]; }
     SeedLink link(End end) const { return links_[end == End::right]; }

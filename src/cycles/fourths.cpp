@@ -115,7 +115,8 @@ void Fourths::link_seeds(int b) {
     Apex& apex = apexes_[static_cast<std::size_t>(b)];
     for (const Slot& seed : apex.slots)
         if (seed.a >= 0)
-            for (Candidate* d = &apex.fourths[seed.first]; d->point >= 0; ++d) d->next = link(b, seed.c, d->point);
+            for (Candidate* d = &apex.fourths[seed.first]; d->point >= 0; ++d)
+                d->next = link(b, seed.c, d->point);
 }
 
 const Candidate* Fourths::of(int a, int b, int c, List& scratch) const {
