@@ -12,55 +12,32 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // --- Chain ---------------------------------------------------------------------------------------
 
-void Chain::assign(std::span<const int> points) {
-    constexpr std::size_t kRoom = 64;  // free places at each end before the buffer has to move
-    buffer_.resize(points.size() + 2 * kRoom);
-    origin_ = begin_ = kRoom;
-    end_ = kRoom + points.size();
-    std::copy(points.begin(), points.end(), buffer_.begin() + kRoom);
+void Chain::assign(std::span<const int> points, std::array<SeedLink, 2> links) {
+    const std::size_t c = points.size();
+    begin_ = buffer_.size() / 3;
+    end_ = begin_ + c;
+    std::copy(points.begin(), points.end(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
+    links_ = links;
     fingerprint_ = Fingerprint(points);
-    orbits_.assign(points.size() - 1, Span{});
-    for (std::size_t j = 1; j < points.size(); ++j)
-        for (std::size_t i = 0; i < j; ++i)
-            orbits_[j - i - 1].include(scene_->distances(points[i], points[j]));
-}
-
-void Chain::add(int point, End end) {
-    if (begin_ == 0 || end_ == buffer_.size()) {
-        const std::size_t room = buffer_.size();
-        std::vector<int> wider(3 * room);
-        std::copy(buffer_.begin(), buffer_.end(), wider.begin() + static_cast<std::ptrdiff_t>(room));
-        buffer_.swap(wider);
-        origin_ += room;
-        begin_ += room;
-        end_ += room;
+    std::fill_n(orbits_.begin(), c - 1, Span{});
+    for (std::size_t i = 0; i < c; ++i) {
+        const double* d = scene_->distances.row(points[i]).data();
+        for (std::size_t j = i + 1; j < c; ++j) orbits_[j - i - 1].include(d[points[j]]);
     }
-    fingerprint_ = fingerprint_with(point, end);
-    const auto d = scene_->distances.row(point);
-    const int c = size();
-    orbits_.emplace_back();
-    for (int k = 0; k < c; ++k)
-        orbits_[static_cast<std::size_t>(k)].include(d[static_cast<std::size_t>(from(end, k))]);
-    if (end == End::right)
-        buffer_[end_++] = point;
-    else
-        buffer_[--begin_] = point;
 }
 
 Chain::Saved Chain::saved() const {
-    Saved saved;
-    saved.begin = static_cast<std::ptrdiff_t>(begin_) - static_cast<std::ptrdiff_t>(origin_);
-    saved.size = end_ - begin_;
-    saved.fingerprint = fingerprint_;
-    std::copy(orbits_.begin(), orbits_.end(), saved.orbits.begin());
+    Saved saved{begin_, end_, links_, fingerprint_, {}};
+    std::copy_n(orbits_.begin(), end_ - begin_ - 1, saved.orbits.begin());
     return saved;
 }
 
 void Chain::restore(const Saved& saved) {
-    begin_ = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(origin_) + saved.begin);
-    end_ = begin_ + saved.size;
+    begin_ = saved.begin;
+    end_ = saved.end;
+    links_ = saved.links;
     fingerprint_ = saved.fingerprint;
-    orbits_.assign(saved.orbits.begin(), saved.orbits.begin() + (end_ - begin_ - 1));
+    std::copy_n(saved.orbits.begin(), end_ - begin_ - 1, orbits_.begin());
 }
 
 // --- short sequences -----------------------------------------------------------------------------
@@ -69,7 +46,7 @@ namespace {
 
 /// Most sequences are this short; their orbits are simply counted again for each question, in loops of known
 /// length.
-constexpr std::size_t kShortSequence = 7;
+constexpr std::size_t kShortSequence = 8;
 
 /// The points of a sequence, but for q in the place `at`, if that is one.
 struct Replaced {
@@ -111,6 +88,8 @@ ToleranceInterval short_interval(const Distances& distances, std::span<const int
             return interval_of<5, kClosed>(distances, points.data(), replaced, floor, limit);
         case 6:
             return interval_of<6, kClosed>(distances, points.data(), replaced, floor, limit);
+        case 7:
+            return interval_of<7, kClosed>(distances, points.data(), replaced, floor, limit);
         default:
             return interval_of<kShortSequence, kClosed>(distances, points.data(), replaced, floor, limit);
     }
@@ -118,11 +97,12 @@ ToleranceInterval short_interval(const Distances& distances, std::span<const int
 
 /// E_min of a chain of kPoints points with one more at the distances `d`; `points` from that end inwards.
 template <std::size_t kPoints>
-double tolerance_with(const Span* orbits, const double* d, const int* points, double floor, double limit) {
+double tolerance_with(const Span* orbits, const double* d, Chain::Inwards points, double floor,
+                      double limit) {
     Span spans[kPoints];
 #pragma GCC unroll 8
     for (std::size_t k = 0; k < kPoints; ++k) {
-        const double own = d[points[k]];
+        const double own = d[points[static_cast<std::ptrdiff_t>(k)]];
         spans[k] = {own, own};
         // The farthest point starts an orbit of its own.
         if (k + 1 < kPoints) spans[k].include(orbits[k]);
@@ -179,51 +159,51 @@ double ChainOracle::tolerance(std::span<const int> points, bool closed) {
 
 // --- candidates ----------------------------------------------------------------------------------
 
-/// The points that the last three at `end` leave to ask, which for longer chains are also noted in inwards_.
-std::span<const Candidate> ChainOracle::list_for(const Chain& chain, End end) {
-    const auto list =
-        fourths_.of(chain.from(end, 2), chain.from(end, 1), chain.from(end, 0), fourths_scratch_);
-    if (list.empty()) return list;
-    inwards_.resize(static_cast<std::size_t>(chain.size()));
-    for (int k = 0; k < chain.size(); ++k) inwards_[static_cast<std::size_t>(k)] = chain.from(end, k);
-    return list;
+/// The points that the last three at `end` leave to ask.
+const Candidate* ChainOracle::list_for(const Chain& chain, End end) {
+    const Chain::Inwards last = chain.from(end);
+    const SeedLink link = chain.link(end);
+    return link != kUnknownLink ? fourths_.of(last[1], link)
+                                : fourths_.of(last[2], last[1], last[0], fourths_scratch_);
 }
 
-/// E_min of the chain with q of the list at `end`; infinite above `limit` and if q is in the chain.
-double ChainOracle::extended_tolerance(const Chain& chain, const Candidate& q, double limit) {
-    const std::size_t c = inwards_.size();
+/// E_min of the chain with q of the list at an end; infinite above `limit` and if q is in the chain.
+double ChainOracle::extended_tolerance(const Chain& chain, Chain::Inwards inwards, const Candidate& q,
+                                       double limit) {
+    const std::ptrdiff_t c = chain.size();
     // The list knows of the last three.
     if (c == 3) return q.tolerance;
     bool inside = false;
-    for (std::size_t k = 3; k < c; ++k) inside |= inwards_[k] == q.point;
+    for (std::ptrdiff_t k = 3; k < c; ++k) inside |= inwards[k] == q.point;
     if (inside) return kInfinity;
     const auto orbits = chain.orbits();
     const double* d = scene_.distances.row(q.point).data();
     const double floor = scene_.resolution;
     switch (c) {
         case 4:
-            return tolerance_with<4>(orbits.data(), d, inwards_.data(), floor, limit);
+            return tolerance_with<4>(orbits.data(), d, inwards, floor, limit);
         case 5:
-            return tolerance_with<5>(orbits.data(), d, inwards_.data(), floor, limit);
+            return tolerance_with<5>(orbits.data(), d, inwards, floor, limit);
         case 6:
-            return tolerance_with<6>(orbits.data(), d, inwards_.data(), floor, limit);
+            return tolerance_with<6>(orbits.data(), d, inwards, floor, limit);
         default:
             break;
     }
     spans_.assign(orbits.begin(), orbits.end());
     spans_.emplace_back();
-    for (std::size_t k = 0; k < c; ++k) {
-        spans_[k].include(d[inwards_[k]]);
-        if (spans_[k].spread() > limit) return kInfinity;
+    for (std::ptrdiff_t k = 0; k < c; ++k) {
+        Span& span = spans_[static_cast<std::size_t>(k)];
+        span.include(d[inwards[k]]);
+        if (span.spread() > limit) return kInfinity;
     }
     return tolerance_interval(spans_, floor, limit).min;
 }
 
 void ChainOracle::candidates(const Chain& chain, End end, std::vector<Candidate>& out) {
     out.clear();
-    for (const Candidate& q : list_for(chain, end)) {
-        const double tolerance = extended_tolerance(chain, q, scene_.max_tolerance);
-        if (tolerance <= scene_.max_tolerance) out.push_back({tolerance, q.point});
+    for (const Candidate* q = list_for(chain, end); q->point >= 0; ++q) {
+        const double tolerance = extended_tolerance(chain, chain.from(end), *q, scene_.max_tolerance);
+        if (tolerance <= scene_.max_tolerance) out.push_back({tolerance, q->point, q->next});
     }
     std::sort(out.begin(), out.end());
 }
@@ -240,10 +220,10 @@ bool may_be_better(const Candidate& q, const Candidate& best, double least) {
 
 Candidate ChainOracle::best_candidate(const Chain& chain, End end, double least, double limit) {
     Candidate best{limit, std::numeric_limits<int>::max()};
-    for (const Candidate& q : list_for(chain, end)) {
-        if (q.tolerance > best.tolerance) break;
-        if (!may_be_better(q, best, least)) continue;
-        best = std::min(best, Candidate{extended_tolerance(chain, q, best.tolerance), q.point});
+    const Chain::Inwards inwards = chain.from(end);
+    for (const Candidate* q = list_for(chain, end); q->tolerance <= best.tolerance; ++q) {
+        if (!may_be_better(*q, best, least)) continue;
+        best = std::min(best, {extended_tolerance(chain, inwards, *q, best.tolerance), q->point, q->next});
     }
     return best.point == std::numeric_limits<int>::max() ? kNobody : best;
 }
@@ -262,11 +242,12 @@ ChainOracle::Sides ChainOracle::best_on_sides(const Chain& chain, End end, doubl
         return scene_.dimension() == 2 || volume == 0 ? 1 : volume > 0 ? 2 : 0;
     };
     Sides best = {kNobody, kNobody, kNobody};
-    for (const Candidate& q : list_for(chain, end)) {
-        Candidate& here = best[side(q.point)];
-        if (!may_be_better(q, here, least)) continue;
+    const Chain::Inwards inwards = chain.from(end);
+    for (const Candidate* q = list_for(chain, end); q->point >= 0; ++q) {
+        Candidate& here = best[side(q->point)];
+        if (!may_be_better(*q, here, least)) continue;
         const double limit = std::min(here.tolerance, scene_.max_tolerance);
-        here = std::min(here, Candidate{extended_tolerance(chain, q, limit), q.point});
+        here = std::min(here, {extended_tolerance(chain, inwards, *q, limit), q->point, q->next});
     }
     return best;
 }
@@ -329,10 +310,6 @@ void ChainOracle::collect_extremes(std::span<const int> points, bool closed) {
 }
 
 bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double eps) {
-    if (points.size() > kShortSequence) {
-        collect_extremes(points, closed);
-        left_out_ = points.size();
-    }
     const std::size_t c = points.size();
     const auto place_of = [&](int p) {
         std::size_t place = c;
@@ -340,10 +317,15 @@ bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double e
         return place;
     };
     // What could be replaced the last time often can again, by the same point: most chains end here.
+    extremes_.clear();
     const std::size_t last = place_of(replaced_);
     if (last < c && scene_.label(replaced_by_) == scene_.label(replaced_) &&
         fits_in_place(points, closed, last, replaced_by_, eps))
         return false;
+    if (c > kShortSequence) {
+        collect_extremes(points, closed);
+        left_out_ = c;
+    }
     // From the ends inwards: there the distances say least.
     for (std::size_t k = 0; k < c; ++k)
         if (replaceable(points, closed, k % 2 == 0 ? k / 2 : c - 1 - k / 2, eps)) return false;
@@ -359,11 +341,9 @@ bool ChainOracle::replaceable(std::span<const int> points, bool closed, std::siz
     const auto beside = [&](std::size_t k) {
         return points[!before ? at + k : at >= k ? at - k : at + c - k];
     };
-    const auto fourths = fourths_.of(beside(3), beside(2), beside(1), fourths_scratch_);
-    for (const Candidate& q : fourths) {
-        if (q.tolerance > eps) break;
-        if (q.point != points[at] && fits_in_place(points, closed, at, q.point, eps)) return true;
-    }
+    const Candidate* q = fourths_.of(beside(3), beside(2), beside(1), fourths_scratch_);
+    for (; q->tolerance <= eps; ++q)
+        if (q->point != points[at] && fits_in_place(points, closed, at, q->point, eps)) return true;
     return false;
 }
 
@@ -427,6 +407,11 @@ ToleranceInterval ChainOracle::long_interval_with(std::span<const int> points, b
     const auto d = scene_.distances.row(q);
     const std::size_t c = points.size();
     const auto to = [&](std::size_t k) { return d[static_cast<std::size_t>(points[k])]; };
+    if (extremes_.empty()) {  // only one point is asked so far
+        replaced_sequence_.assign(points.begin(), points.end());
+        replaced_sequence_[at] = q;
+        return interval(replaced_sequence_, closed);
+    }
     if (at != left_out_) leave_out(c, closed, at);
     spans_ = rest_;
     for (std::size_t r = 1; r <= rest_.size(); ++r) {

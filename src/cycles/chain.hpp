@@ -20,16 +20,34 @@ enum class End { left, right };
 /// date: adding a point costs O(c).
 class Chain {
 public:
-    explicit Chain(const Scene& scene) : scene_(&scene) {}
+    /// With room for all points on either side of where it starts.
+    explicit Chain(const Scene& scene)
+        : scene_(&scene), buffer_(3 * static_cast<std::size_t>(scene.size())), orbits_(buffer_.size() / 3) {}
 
-    void assign(std::span<const int> points);
-    void add(int point, End end);
+    /// `links`: where the fourth points at the left and at the right end are stored, if that is known.
+    void assign(std::span<const int> points, std::array<SeedLink, 2> links = {kUnknownLink, kUnknownLink});
+    /// `link`: where the fourth points of the last three at that end are stored then, if that is known.
+    void add(int point, End end, SeedLink link = kUnknownLink) {
+        const double* d = scene_->distances.row(point).data();
+        const Inwards inwards = from(end);
+        const std::ptrdiff_t c = size();
+        fingerprint_.add_link(inwards[0], point);
+        orbits_[static_cast<std::size_t>(c - 1)] = {};
+        for (std::ptrdiff_t k = 0; k < c; ++k) orbits_[static_cast<std::size_t>(k)].include(d[inwards[k]]);
+        if (end == End::right)
+            buffer_[end_++] = point;
+        else
+            buffer_[--begin_] = point;
+        links_[end == End::right] = link;
+    }
+    void add(const Candidate& next, End end) { add(next.point, end, next.next); }
 
     static constexpr int kLongestSaved = 8;
     /// A chain of at most kLongestSaved points, to come back to from the longer ones that it grew to.
     struct Saved {
-        std::ptrdiff_t begin = 0;  // from the origin
-        std::size_t size = 0;
+        std::size_t begin = 0;
+        std::size_t end = 0;
+        std::array<SeedLink, 2> links;
         Fingerprint fingerprint;
         std::array<Span, kLongestSaved - 1> orbits;
     };
@@ -38,13 +56,20 @@ public:
 
     int size() const { return static_cast<int>(end_ - begin_); }
     std::span<const int> points() const { return {buffer_.data() + begin_, end_ - begin_}; }
-    /// The k-th point counted from `end`, from 0.
-    int from(End end, int k) const {
-        return end == End::right ? buffer_[end_ - 1 - static_cast<std::size_t>(k)]
-                                 : buffer_[begin_ + static_cast<std::size_t>(k)];
+    /// The points counted from one end, from 0.
+    struct Inwards {
+        const int* first;
+        std::ptrdiff_t step;
+        int operator[](std::ptrdiff_t k) const { return first[k * step]; }
+    };
+    Inwards from(End end) const {
+        return end == End::right ? Inwards{buffer_.data() + end_ - 1, -1}
+                                 : Inwards{buffer_.data() + begin_, 1};
     }
+    int from(End end, int k) const { return from(end)[k]; }
+    SeedLink link(End end) const { return links_[end == End::right]; }
     /// Orbit r - 1 holds the distances |P_l P_{l+r}|.
-    std::span<const Span> orbits() const { return orbits_; }
+    std::span<const Span> orbits() const { return {orbits_.data(), end_ - begin_ - 1}; }
     const Fingerprint& fingerprint() const { return fingerprint_; }
     /// That of the chain with one more point.
     Fingerprint fingerprint_with(int point, End end) const {
@@ -54,10 +79,10 @@ public:
 private:
     const Scene* scene_;
     std::vector<int> buffer_;
-    std::size_t origin_ = 0;  // where the chain began when it was assigned
     std::size_t begin_ = 0;
     std::size_t end_ = 0;
     std::vector<Span> orbits_;
+    std::array<SeedLink, 2> links_ = {kUnknownLink, kUnknownLink};  // at the left and at the right end
     Fingerprint fingerprint_;
 };
 
@@ -88,11 +113,11 @@ public:
     using Sides = std::array<Candidate, 3>;
     Sides best_on_sides(const Chain& chain, End end, double least);
 
-    static constexpr Candidate kNobody{std::numeric_limits<double>::infinity(), -1};
+    static constexpr Candidate kNobody = Fourths::kNobody;
 
 private:
-    std::span<const Candidate> list_for(const Chain& chain, End end);
-    double extended_tolerance(const Chain& chain, const Candidate& q, double limit);
+    const Candidate* list_for(const Chain& chain, End end);
+    double extended_tolerance(const Chain& chain, Chain::Inwards inwards, const Candidate& q, double limit);
     void collect_extremes(std::span<const int> points, bool closed);
     bool replaceable(std::span<const int> points, bool closed, std::size_t at, double eps);
     bool replaceable_from_shell(std::span<const int> points, bool closed, std::size_t at, double eps);
@@ -119,9 +144,9 @@ private:
     const Scene& scene_;
     const Fourths& fourths_;
     Fourths::List fourths_scratch_;
-    std::vector<int> inwards_;  // the points of a chain from an end inwards
     std::vector<Span> spans_;
-    std::vector<Extremes> extremes_;
+    std::vector<Extremes> extremes_;  // of the sequence at hand, once they are asked for
+    std::vector<int> replaced_sequence_;
     std::size_t left_out_ = 0;  // the place of a point
     std::vector<Span> rest_;    // the orbits without the distances of that point
     int replaced_ = -1;         // the point that could be replaced the last time

@@ -76,6 +76,15 @@ public:
         return slots_[s].entry;
     }
 
+    /// What is known of the path from `chain` on, which need not have been met.
+    Answer path(const Fingerprint& chain) const {
+        std::size_t s = chain.low() & (slots_.size() - 1);
+        for (; slots_[s].entry != kFree; s = (s + 1) & (slots_.size() - 1))
+            if (slots_[s].low == chain.low() && slots_[s].high == chain.high())
+                return entries_[slots_[s].entry].path;
+        return Answer::unknown;
+    }
+
     Known& operator[](Id id) {
         return entries_[id];
     }

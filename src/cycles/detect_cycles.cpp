@@ -1,6 +1,7 @@
 #include "cycles/detect_cycles.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <limits>
 #include <optional>
@@ -78,9 +79,10 @@ public:
 private:
     template <class Visit>
     void visit_seeds(int apex, Visit visit);
-    bool expand_four(std::span<const int> four, double tolerance);
+    bool expand_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links);
     using Ends = std::pair<Candidate, Candidate>;  // the best candidates at the left and at the right end
     bool follow_path(double tolerance, std::optional<Ends> ends = {});
+    bool follow_branch(const Candidate& next, End end);
     Ends best_ends(double least, double limit);
     End better_end(const Candidate& left, const Candidate& right) const;
     bool follow_both(const Candidate& left, const Candidate& right);
@@ -165,13 +167,14 @@ void Expansion::visit_seeds(int apex, Visit visit) {
 
 void Expansion::expand_fours(int apex) {
     const auto expand = [&](int a, int c) {
-        const auto fourths = fourths_.of(a, apex, c, list_);
         fours_.clear();
-        for (const Candidate& d : fourths)
-            if (a < d.point) fours_.push_back(d);
+        for (const Candidate* d = fourths_.of(a, apex, c, list_); d->point >= 0; ++d)
+            if (a < d->point) fours_.push_back(*d);
+        if (fours_.empty()) return;
+        const SeedLink backwards = fourths_.link(c, apex, a);
         for (const Candidate& d : fours_) {
             const int four[] = {a, apex, c, d.point};
-            if (expand_four(four, d.tolerance)) continue;
+            if (expand_four(four, d.tolerance, {backwards, d.next})) continue;
             failed_.add(a, apex, c);
             failed_.add(d.point, c, apex);
         }
@@ -198,8 +201,8 @@ void Expansion::resolve_seeds(int apex) {
 
 /// In 3D also branches over the best fifth point at either end on each side of the plane of the three
 /// points there. True if every branch found a cycle, be it the chain of four itself.
-bool Expansion::expand_four(std::span<const int> four, double tolerance) {
-    chain_.assign(four);
+bool Expansion::expand_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links) {
+    chain_.assign(four, links);
     const Chain::Saved here = chain_.saved();
     const ChainOracle::Sides lefts = oracle_.best_on_sides(chain_, End::left, tolerance);
     const ChainOracle::Sides rights = oracle_.best_on_sides(chain_, End::right, tolerance);
@@ -214,10 +217,17 @@ bool Expansion::expand_four(std::span<const int> four, double tolerance) {
         for (const Candidate& fifth : end == End::left ? lefts : rights) {
             if (fifth.point < 0) continue;
             chain_.restore(here);
-            chain_.add(fifth.point, end);
-            if (!follow_path(fifth.tolerance) && !resolve_open(four, tolerance)) found = false;
+            if (!follow_branch(fifth, end) && !resolve_open(four, tolerance)) found = false;
         }
     return found;
+}
+
+/// The path of chain_ with `next` at `end`; chain_ does not grow where that is known.
+bool Expansion::follow_branch(const Candidate& next, End end) {
+    const Answer known = memo_.path(chain_.fingerprint_with(next.point, end));
+    if (known != Answer::unknown) return known == Answer::yes;
+    chain_.add(next, end);
+    return follow_path(next.tolerance);
 }
 
 /// From chain_ on, with E_min `tolerance` and the best candidates `ends`, if known: adds the point of least
@@ -259,7 +269,7 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
         const End to = better_end(left, right);
         path_.push_back({id, to, tolerance});
         const Candidate& next = to == End::right ? right : left;
-        chain_.add(next.point, to);
+        chain_.add(next, to);
         tolerance = next.tolerance;
     }
     // Back along the path, each chain a window of the last.
@@ -286,11 +296,9 @@ bool Expansion::follow_both(const Candidate& left, const Candidate& right) {
     memo_.prefetch(chain_.fingerprint_with(right.point, End::right));
     memo_.prefetch(chain_.fingerprint_with(left.point, End::left));
     const Chain::Saved here = chain_.saved();
-    chain_.add(right.point, End::right);
-    const bool found = follow_path(right.tolerance);
+    const bool found = follow_branch(right, End::right);
     chain_.restore(here);
-    chain_.add(left.point, End::left);
-    const bool found_left = follow_path(left.tolerance);
+    const bool found_left = follow_branch(left, End::left);
     chain_.restore(here);
     return found && found_left;
 }
@@ -323,9 +331,7 @@ bool Expansion::resolve_open(std::span<const int> chain, double tolerance, Chain
 /// C3 by extension, then the types. True if a cycle came out. Each longer chain met on the way
 /// would come to the same end, so one answer serves them all: passed_.
 bool Expansion::become_cycle(std::span<const int> chain, double tolerance) {
-    longer_.assign(chain.begin(), chain.end());
-    if (longer_.front() > longer_.back()) std::reverse(longer_.begin(), longer_.end());
-    extended_.assign(longer_);
+    extended_.assign(chain);
     while (extend(tolerance)) {
         const double closed = oracle_.closed_tolerance(extended_);
         if (closed <= scene_.max_tolerance && oracle_.unambiguous(extended_.points(), true, closed))
@@ -356,9 +362,12 @@ bool Expansion::keep(std::span<const int> sequence, bool closed, double toleranc
 }
 
 /// C3: extended_ takes the point of least E_min at either end that keeps C1 and C2; ties by the longer
-/// sequence.
+/// sequence, in the direction in which the chain itself comes before its reverse: what is added depends on
+/// the chain alone, never on how it was come by.
 bool Expansion::extend(double& tolerance) {
     const auto points = extended_.points();
+    const End head = points.front() < points.back() ? End::left : End::right;
+    const int first = std::min(points.front(), points.back());
     extensions_.clear();
     for (const End end : {End::left, End::right}) {
         oracle_.candidates(extended_, end, candidates_);
@@ -368,13 +377,13 @@ bool Expansion::extend(double& tolerance) {
         if (x.candidate.tolerance != y.candidate.tolerance)
             return x.candidate.tolerance < y.candidate.tolerance;
         if (x.end == y.end) return x.candidate.point < y.candidate.point;
-        return x.end == End::left ? x.candidate.point < points.front() : points.front() < y.candidate.point;
+        return x.end == head ? x.candidate.point < first : first < y.candidate.point;
     });
     for (const auto& [candidate, end] : extensions_) {
         longer_.assign(points.begin(), points.end());
         longer_.insert(end == End::left ? longer_.begin() : longer_.end(), candidate.point);
         if (!oracle_.unambiguous(longer_, false, candidate.tolerance)) continue;
-        extended_.add(candidate.point, end);
+        extended_.add(candidate, end);
         tolerance = candidate.tolerance;
         return true;
     }

@@ -54,6 +54,7 @@ Fourths::Fourths(const Scene& scene, RunMonitor& monitor)
         stored_ = false;
         apexes_ = {};
     }
+    if (stored_) parallel_for(scene.size(), [&](int b) { link_seeds(b); });
     for (Apex& apex : apexes_) {
         apex.first = seeds_;
         seeds_ += apex.slots.size();
@@ -64,6 +65,7 @@ void Fourths::build(int b, RunMonitor& monitor) {
     Apex& apex = apexes_[static_cast<std::size_t>(b)];
     std::vector<Slot> seeds;
     std::vector<Wing> left, right;
+    apex.fourths.push_back(kNobody);
     // The exact test decides; rounding here must lose nothing.
     const double reach = scene_.max_tolerance + 1e-12 * scene_.diameter;
     for (int c = 0; c < scene_.size(); ++c) {
@@ -88,11 +90,10 @@ void Fourths::build(int b, RunMonitor& monitor) {
                                                            scene_.resolution, scene_.max_tolerance);
                 if (tolerance <= scene_.max_tolerance) apex.fourths.push_back({tolerance, d.point});
             }
-            const std::size_t count = apex.fourths.size() - before;
-            if (count == 0) continue;
+            if (apex.fourths.size() == before) continue;
             std::sort(apex.fourths.begin() + static_cast<std::ptrdiff_t>(before), apex.fourths.end());
-            seeds.push_back(
-                {a.point, c, static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(count)});
+            apex.fourths.push_back(kNobody);
+            seeds.push_back({a.point, c, static_cast<SeedLink>(before)});
         }
     }
     fill_table(apex, seeds);
@@ -109,14 +110,25 @@ void Fourths::fill_table(Apex& apex, const std::vector<Slot>& seeds) const {
     }
 }
 
-std::span<const Candidate> Fourths::of(int a, int b, int c, List& scratch) const {
-    if (!stored_) {
-        make(a, b, c, scratch);
-        return scratch;
-    }
+/// After all apexes are built: each fourth point d of (a, b, c) learns where those of (b, c, d) are.
+void Fourths::link_seeds(int b) {
+    Apex& apex = apexes_[static_cast<std::size_t>(b)];
+    for (const Slot& seed : apex.slots)
+        if (seed.a >= 0)
+            for (Candidate* d = &apex.fourths[seed.first]; d->point >= 0; ++d)
+                d->next = link(b, seed.c, d->point);
+}
+
+const Candidate* Fourths::of(int a, int b, int c, List& scratch) const {
+    if (stored_) return of(b, link(a, b, c));
+    make(a, b, c, scratch);
+    return scratch.data();
+}
+
+SeedLink Fourths::link(int a, int b, int c) const {
+    if (!stored_) return kUnknownLink;
     const Slot* slot = find(a, b, c);
-    if (slot == nullptr) return {};
-    return {apexes_[static_cast<std::size_t>(b)].fourths.data() + slot->first, slot->count};
+    return slot == nullptr ? 0 : slot->first;
 }
 
 std::ptrdiff_t Fourths::seed(int a, int b, int c) const {
@@ -136,7 +148,7 @@ const Fourths::Slot* Fourths::find(int a, int b, int c) const {
 }
 
 void Fourths::make(int a, int b, int c, List& list) const {
-    list.clear();
+    list.assign(1, kNobody);
     const auto& d = scene_.distances;
     if (scene_.label(a) != scene_.label(b) || scene_.label(c) != scene_.label(b)) return;
     const double slack = scene_.max_tolerance + 1e-12 * scene_.diameter;

@@ -1,10 +1,9 @@
 // All chains of four points that satisfy C1: the pieces that every longer chain is made of.
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <limits>
 #include <vector>
 
 #include "run_monitor.hpp"
@@ -12,11 +11,22 @@
 
 namespace insym {
 
+/// Where the fourth points of a seed are stored, among those of its apex.
+using SeedLink = std::uint32_t;
+constexpr SeedLink kUnknownLink = ~SeedLink{0};
+
 /// A point that a chain can take at an end, and E_min of the longer chain.
 struct Candidate {
     double tolerance = 0;
     int point = 0;
-    friend auto operator<=>(const Candidate&, const Candidate&) = default;
+    SeedLink next = kUnknownLink;  ///< of the last three points once it is taken
+
+    friend bool operator==(const Candidate& x, const Candidate& y) {
+        return x.tolerance == y.tolerance && x.point == y.point;
+    }
+    friend bool operator<(const Candidate& x, const Candidate& y) {
+        return x.tolerance < y.tolerance || (x.tolerance == y.tolerance && x.point < y.point);
+    }
 };
 
 /// For each seed (A, B, C) its fourth points D. As every part of a valid chain is valid at the same
@@ -33,14 +43,22 @@ public:
 
     Fourths(const Scene& scene, RunMonitor& monitor);
 
-    /// The points D for which (a, b, c, D) satisfies C1, least E_min first, ties by index. The list may
-    /// lie in `scratch`.
-    std::span<const Candidate> of(int a, int b, int c, List& scratch) const;
+    /// The points D for which (a, b, c, D) satisfies C1, least E_min first, ties by index. The list ends with
+    /// nobody, at an infinite E_min. It may lie in `scratch`.
+    const Candidate* of(int a, int b, int c, List& scratch) const;
+    /// The same where it is known where they are stored.
+    const Candidate* of(int b, SeedLink link) const {
+        return apexes_[static_cast<std::size_t>(b)].fourths.data() + link;
+    }
+    /// Where they are stored, if they are.
+    SeedLink link(int a, int b, int c) const;
 
     /// The number of the seed (a, b, c), one way round, in [0, seeds()); -1 if it has no fourth points or if
     /// nothing is stored.
     std::ptrdiff_t seed(int a, int b, int c) const;
     std::size_t seeds() const { return seeds_; }
+
+    static constexpr Candidate kNobody{std::numeric_limits<double>::infinity(), -1};
 
 private:
     static constexpr std::size_t kMostStored = std::size_t{1} << 25;  // of 16 bytes
@@ -49,16 +67,16 @@ private:
     struct Slot {
         int a = -1;  // -1: free
         int c = -1;
-        std::uint32_t first = 0;
-        std::uint32_t count = 0;
+        SeedLink first = 0;
     };
     struct Apex {
         std::vector<Slot> slots;  // a power of two, or none
         std::size_t first = 0;    // the number of the first slot
-        List fourths;
+        List fourths;             // begins with an empty list, for all other seeds
     };
 
     void build(int b, RunMonitor& monitor);
+    void link_seeds(int b);
     void fill_table(Apex& apex, const std::vector<Slot>& seeds) const;
     const Slot* find(int a, int b, int c) const;
     void make(int a, int b, int c, List& list) const;

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "isometry/fit.hpp"
-
 namespace insym {
 namespace {
 
@@ -82,12 +80,13 @@ TypeSet TypeOracle::types(std::span<const int> points, bool closed, double eps) 
         return found;
     }
     if (is_flat_ || scene_.dimension() == 2) return found;
-    if (!closed && c >= kLeastHelix && near_helix(false, closed)) {
-        found.insert(SymmetryType::screw);
-        return found;
-    }
     const bool long_enough = closed ? c >= kLeastAlternatingRing && c % 2 == 0 : c >= kLeastHelix;
-    if (long_enough && near_helix(true, closed)) found.insert(SymmetryType::rotation_reflection);
+    if (!long_enough) return found;
+    const RigidFits step = fit_step(closed);
+    if (!closed && near_helix(step.proper))
+        found.insert(SymmetryType::screw);
+    else if (near_helix(step.improper))
+        found.insert(SymmetryType::rotation_reflection);
     return found;
 }
 
@@ -209,14 +208,16 @@ bool TypeOracle::near_zigzag() {
     return true;
 }
 
-bool TypeOracle::near_helix(bool improper, bool closed) {
-    const std::size_t c = x_.size();
+/// The least-squares isometries that carry each point to the next.
+RigidFits TypeOracle::fit_step(bool closed) const {
     LinkSums sums;
-    for (std::size_t i = 0; i + 1 < c; ++i) sums.add({x_[i], x_[i + 1]});
+    for (std::size_t i = 0; i + 1 < x_.size(); ++i) sums.add({x_[i], x_[i + 1]});
     if (closed) sums.add({x_.back(), x_.front()});
-    const RigidFits fits = fit_rigid(sums, scene_.dimension());
-    const RigidMap& step = improper ? fits.improper : fits.proper;
+    return fit_rigid(sums, scene_.dimension());
+}
 
+bool TypeOracle::near_helix(const RigidMap& step) {
+    const std::size_t c = x_.size();
     // Pull every point back to the first, average, and go out again.
     Vector3d first = Vector3d::Zero();
     RigidMap power;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "isometry/fit.hpp"
 #include "scene.hpp"
 
 namespace insym {
@@ -28,7 +29,8 @@ private:
     void find_turns();
     bool near_circle(bool closed);
     bool near_zigzag();
-    bool near_helix(bool improper, bool closed);
+    RigidFits fit_step(bool closed) const;
+    bool near_helix(const RigidMap& step);
 
     const Scene& scene_;
     double eps_ = 0;
