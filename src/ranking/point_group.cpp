@@ -207,7 +207,6 @@ private:
             if (s.type == SymmetryType::translation || s.type == SymmetryType::screw ||
                 s.type == SymmetryType::glide_reflection)
                 continue;
-            if (s.coverage < 0.5) continue;
             // A tolerance of the size of the gaps between points says nothing about their places.
             if (s.deviation.max > 0.12 * cloud_.gap()) continue;
             Candidate c{k,
@@ -222,7 +221,7 @@ private:
                 if (off <= kShareOfGap * cloud_.gap()) c.slack = std::max(c.slack, off);
             }
             for (const bool back : {false, true})
-                for (int i = 0; i < cloud_.size(); ++i) {
+                for (int i = 0; i < cloud_.size() && c.holes.size() <= 2 * most_slots(); ++i) {
                     const Vector3d& p = cloud_[i];
                     const Vector3d image =
                         back ? Vector3d(c.map.linear.transpose() * (p - c.map.shift)) : c.map(p);
