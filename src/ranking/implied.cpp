@@ -49,6 +49,7 @@ public:
     }
 
     const Item& operator[](std::size_t k) const { return items_[k]; }
+    const Vector3d& place(int point) const { return cloud_[point]; }
 
     /// Powers of symmetry k, both ways, the first the map itself.
     std::vector<RigidMap> powers(std::size_t k, int most) const {
@@ -161,44 +162,86 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
     }
 }
 
+namespace {
+
+/// The better-ranked symmetries that others are words of.
+class Generators {
+public:
+    explicit Generators(const Implications& all) : all_(all) {}
+
+    bool full() const { return ids_.size() >= kMost; }
+    void add(std::size_t k) {
+        ids_.push_back(k);
+        powers_.push_back(all_.powers(k, kMostPowers));
+    }
+
+    /// Those that symmetry k is a power of, or a product of powers of; nothing where there are none.
+    std::vector<std::size_t> of(std::size_t k) const {
+        const Item& a = all_[k];
+        std::vector<std::size_t> able;  // those that carry these points
+        for (std::size_t g = 0; g < ids_.size(); ++g)
+            if (all_.carries(all_[ids_[g]], a)) able.push_back(g);
+        for (const std::size_t g : able)
+            for (std::size_t j = 0; j < powers_[g].size(); ++j)
+                if (all_.equal(a, powers_[g][j], slack_of_power(a, all_[ids_[g]], j))) return {ids_[g]};
+        return product_of_two(a, able);
+    }
+
+private:
+    static constexpr std::size_t kMost = 24;
+    static constexpr std::size_t kMostWords = 24;  // powers, forward and back
+
+    /// One point settles nearly all words: the second power takes it to where the first must fetch it from.
+    std::vector<std::size_t> product_of_two(const Item& a, const std::vector<std::size_t>& able) const {
+        const int witness = a.points.front();
+        std::vector<std::vector<Vector3d>> taken(able.size()), fetched(able.size());
+        for (std::size_t g = 0; g < able.size(); ++g) {
+            const std::vector<RigidMap>& powers = powers_[able[g]];
+            const std::size_t count = std::min(powers.size(), kMostWords);
+            for (std::size_t j = 0; j < count; ++j) {
+                taken[g].push_back(powers[j](all_.place(witness)));
+                fetched[g].push_back(inverse(powers[j])(a.map(all_.place(witness))));
+            }
+        }
+        for (std::size_t g = 0; g < able.size(); ++g)
+            for (std::size_t h = 0; h < able.size(); ++h) {
+                if (g == h) continue;
+                const std::size_t first = ids_[able[g]], second = ids_[able[h]];
+                const double slack = slack_of(a, all_[first], all_[second]);
+                for (std::size_t i = 0; i < fetched[g].size(); ++i)
+                    for (std::size_t j = 0; j < taken[h].size(); ++j)
+                        if ((fetched[g][i] - taken[h][j]).squaredNorm() <= slack * slack &&
+                            all_.equal(a, compose(powers_[able[g]][i], powers_[able[h]][j]), slack))
+                            return {first, second};
+            }
+        return {};
+    }
+
+    const Implications& all_;
+    std::vector<std::size_t> ids_;
+    std::vector<std::vector<RigidMap>> powers_;
+};
+
+}  // namespace
+
 void mark_implied(const Cloud& cloud, std::vector<Symmetry>& symmetries, RunMonitor& monitor) {
     if (monitor.should_stop()) return;
-    constexpr std::size_t kMostGenerators = 24;
-    constexpr std::size_t kMostWords = 24;  // powers, forward and back
     const Implications all(cloud, symmetries);
-    std::vector<std::size_t> generators;
-    std::vector<std::vector<RigidMap>> powers;
-    for (std::size_t k = 0; k < symmetries.size() && !monitor.should_stop(); ++k) {
-        const Item& a = all[k];
-        std::vector<std::size_t> able;  // of the generators, those that carry these points
-        for (std::size_t g = 0; g < generators.size(); ++g)
-            if (all.carries(all[generators[g]], a)) able.push_back(g);
-        const auto found = [&]() -> std::vector<std::size_t> {
-            for (const std::size_t g : able)
-                for (std::size_t j = 0; j < powers[g].size(); ++j)
-                    if (all.equal(a, powers[g][j], slack_of_power(a, all[generators[g]], j))) return {g};
-            for (const std::size_t g : able)
-                for (const std::size_t h : able) {
-                    if (g == h) continue;
-                    const double slack = slack_of(a, all[generators[g]], all[generators[h]]);
-                    const std::size_t m = std::min<std::size_t>(powers[g].size(), kMostWords);
-                    const std::size_t n = std::min<std::size_t>(powers[h].size(), kMostWords);
-                    for (std::size_t i = 0; i < m; ++i)
-                        for (std::size_t j = 0; j < n; ++j)
-                            if (all.equal(a, compose(powers[g][i], powers[h][j]), slack)) return {g, h};
-                }
-            return {};
-        }();
-        if (found.empty()) {
-            if (generators.size() < kMostGenerators) {
-                generators.push_back(k);
-                powers.push_back(all.powers(k, kMostPowers));
-            }
-            continue;
-        }
-        for (const std::size_t g : found) symmetries[k].implied_by.push_back(symmetries[generators[g]].id);
-        std::sort(symmetries[k].implied_by.begin(), symmetries[k].implied_by.end());
+    Generators generators(all);
+    const auto mark = [&](std::size_t k) {
+        std::vector<int>& ids = symmetries[k].implied_by;
+        for (const std::size_t g : generators.of(k)) ids.push_back(symmetries[g].id);
+        std::sort(ids.begin(), ids.end());
+    };
+    std::size_t k = 0;
+    for (; k < symmetries.size() && !generators.full() && !monitor.should_stop(); ++k) {
+        mark(k);
+        if (symmetries[k].implied_by.empty()) generators.add(k);
     }
+    // What comes after the last generator does not depend on one another.
+    parallel_for(symmetries.size() - k, [&](std::size_t i) {
+        if (!monitor.should_stop()) mark(k + i);
+    });
 }
 
 }  // namespace insym

@@ -46,8 +46,8 @@ public:
     RobustResult run(TypeSet types) {
         const double reach = gatherer_.reach();
         const auto n = static_cast<std::size_t>(cloud_.size());
-        // So many hypotheses of each source, for 100 points; in a large set one costs little, as most are local,
-        // and what there is to find grows with the points.
+        // So many hypotheses of each source, for 100 points; in a large set one costs little, as most are
+        // local, and what there is to find grows with the points.
         const auto budget = [&](double at_100) {
             const double share = static_cast<double>(n) / 100;
             return static_cast<std::size_t>(40 + at_100 / (share * share));
