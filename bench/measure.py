@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -66,12 +67,16 @@ def detect(insym, path, **options):
     return Run(json.loads(raw), raw, float(cpu_s), int(peak_kib) / 1024)
 
 
-def take_turns(repetitions, measurements):
-    """Results of each of the functions, which take turns so that a busy machine slows all alike."""
-    results = [[] for _ in measurements]
+def take_turns(repetitions, measurements, enough_s=60):
+    """Results of each of the functions, which take turns so that a busy machine slows all alike. What has taken
+    `enough_s` seconds is not repeated further."""
+    results, spent = [[] for _ in measurements], [0.0] * len(measurements)
     for _ in range(repetitions):
-        for own, measure in zip(results, measurements):
-            own.append(measure())
+        for k, measure in enumerate(measurements):
+            if spent[k] < enough_s:
+                start = time.perf_counter()
+                results[k].append(measure())
+                spent[k] += time.perf_counter() - start
     return results
 
 

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <tuple>
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include "cycles/chain.hpp"
+#include "parallel_for.hpp"
 
 namespace insym {
 namespace {
@@ -58,10 +61,17 @@ CycleSearchResult search_slab(const Scene& scene, const std::vector<int>& slab, 
 /// Drops what is ambiguous among all points; says how many.
 std::size_t drop_ambiguous(const Scene& scene, std::vector<Cycle>& cycles) {
     const Fourths fourths(scene);
-    ChainOracle oracle(scene, fourths);
-    return std::erase_if(cycles, [&](const Cycle& cycle) {
-        return !oracle.unambiguous(cycle.points, cycle.closed, cycle.tolerance.min);
+    tbb::enumerable_thread_specific<ChainOracle> oracles([&] { return ChainOracle(scene, fourths); });
+    std::vector<char> ambiguous(cycles.size());  // not of bits: written by several threads
+    parallel_for(cycles.size(), [&](std::size_t k) {
+        const Cycle& c = cycles[k];
+        ambiguous[k] = oracles.local().unambiguous(c.points, c.closed, c.tolerance.min) ? 0 : 1;
     });
+    std::vector<Cycle> kept;
+    for (std::size_t k = 0; k < cycles.size(); ++k)
+        if (ambiguous[k] == 0) kept.push_back(std::move(cycles[k]));
+    cycles.swap(kept);
+    return kept.size() - cycles.size();
 }
 
 }  // namespace
