@@ -8,9 +8,9 @@ Parts (bolts, brackets with a mirror plane, unsymmetric lumps) are repeated in g
 is placed and turned at random in a flat box that grows with N. Patterns are whole: the last ones are drawn until they
 fit, and scattered points fill what room is left. All points have a normal error of SHARE of the diameter.
 
-TRUTH.json: "patterns", each with its `type` (C or T), its `angle_deg` or `step`, and `size`, its points; "pattern_of", the number of the
-pattern of each point, -1 for scattered ones. A pattern counts as found if a symmetry of its type, with its step or angle to within 1 %,
-carries at least 80 % of its points.
+TRUTH.json: "patterns", each with its `type` (C or T), its `angle_deg` or `step`, and `size`, its points; "pattern_of",
+the number of the pattern of each point, -1 for scattered ones. A pattern counts as found if a symmetry of its type, with
+its step or angle to within 1 %, carries at least 80 % of its points.
 """
 import argparse
 import json

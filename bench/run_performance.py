@@ -30,7 +30,8 @@ from chart import chart
 
 CYCLES_ONLY = "C,T,Z,S,W"
 METHODS = ("robust", "paper")
-QUICK_TIME_LIMIT = 2  # seconds, of one run
+QUICK_TIME_LIMIT = 1  # seconds, of one run
+WHOLE = {"time_limit": None}  # where what is found is compared
 
 
 class Bench:
@@ -275,7 +276,7 @@ def kicad(bench):
 def threads(bench):
     n = 100 if bench.quick else 20000
     path = bench.points("threads", assembly.assembly(n)[0])
-    one, two = bench.repeated((path, {"threads": 1}), (path, {"threads": 2}))
+    one, two = bench.repeated((path, WHOLE | {"threads": 1}), (path, WHOLE | {"threads": 2}))
     same = len({run.bytes_without_timing() for run in one + two}) == 1
     speedup = median(one, detect_s) / median(two, detect_s)
     rows = [[f"assembly of {n:,}", time_of(one), time_of(two), f"{speedup:.2f}",
@@ -296,7 +297,7 @@ def small_set():
 
 
 def compare_with_reference(bench, path, points, share, name, target):
-    runs, = bench.repeated((path, {"method": "paper", "share": share, "kinds": CYCLES_ONLY}))
+    runs, = bench.repeated((path, WHOLE | {"method": "paper", "share": share, "kinds": CYCLES_ONLY}))
     lengths = runs[0].report["options"]
     ref = measure.reference(bench.options.shared)
     start = time.perf_counter()
@@ -329,7 +330,7 @@ def spglib(bench):
         for orbits in (1,) if bench.quick else (1, 4, 20):
             points = clusters.cluster(group, orbits)
             path = bench.points(f"{group}{orbits}".replace("/", "_"), points)
-            runs, = bench.repeated((path, {"method": "robust"}))
+            runs, = bench.repeated((path, WHOLE))
             times, order, symbol = clusters.with_spglib(group, points, 1 if bench.quick else bench.options.repetitions)
             own, other = median(runs, detect_s), statistics.median(times)
             named = runs[0].report["group"]["hermann_mauguin"]

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """The measuring programs of bench/: bench_test.py PROGRAM SOURCES. Nothing is timed.
 
-Oracle: geometry, for what the assemblies hold; the definition of "found", for the score; for the runner, that it replaces the
-figures of the page and no other word, that the definitions as a program (reference.py) give as many cycles, that spglib names the same
-group, and that the report has the same bytes for one thread and two.
+Oracle: geometry, for what the assemblies hold; the definition of "found", for the score; for the runner, that it
+replaces the figures of the page and no other word, that the definitions as a program (reference.py) give as many
+cycles, that spglib names the same group, and that the report has the same bytes for one thread and two.
 """
 import re
 import subprocess
