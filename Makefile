@@ -6,17 +6,20 @@ JOBS ?= $(shell nproc)
 # Clones of the project in different folders share what ccache keeps.
 export CCACHE_BASEDIR := $(CURDIR)
 export CCACHE_NOHASHDIR := true
+KICAD ?=  # make bench: folder with the models of Debian's kicad-packages3d
 CMAKE_ARGS ?=  # more arguments for CMake, such as -DINSYM_WARNINGS_AS_ERRORS=OFF
 
 .PHONY: help
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-.PHONY: packages-build packages-test packages-docs packages-lint
+.PHONY: packages-build packages-test packages-bench packages-docs packages-lint
 packages-build:
 	@scripts/install_packages.sh build
 packages-test:
 	@scripts/install_packages.sh build test docs
+packages-bench:
+	@scripts/install_packages.sh build test bench
 packages-docs:
 	@scripts/install_packages.sh build docs
 packages-lint:
@@ -67,10 +70,11 @@ sanitize-threads: packages-test ## Run the tests of what runs in parallel with t
 	TSAN_OPTIONS=suppressions=$(CURDIR)/cmake/tsan_suppressions.txt build-tsan/tests/property/insym_property_pairs
 
 .PHONY: bench
-bench: packages-test ## Time the stages, and the program against its targets
+bench: packages-bench ## Time the stages, and the program against its targets; write docs/performance.md
 	@$(call build,release,insym_app insym_bench)
 	build/bench/insym_bench
 	/usr/bin/python3 bench/run_bench.py
+	/usr/bin/python3 bench/run_performance.py $(if $(KICAD),--kicad $(KICAD))
 
 .PHONY: page
 page: packages-test ## Build the page of --html anew, after a change in viewer/

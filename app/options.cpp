@@ -63,7 +63,7 @@ cannot be read; 4 the input is invalid; 5 stopped early, the report is valid and
 
 /// The options as they were typed; empty: not given.
 struct Typed {
-    std::string input, json, html, gltf, png, columns, time_limit, limit;
+    std::string input, json, html, gltf, png, columns, time_limit, limit, regions;
     std::string points = "representative", labels = "entity", label_tolerance = "0.01", sharp_angle = "30";
     std::string import_memory = "4096", import_time = "300";
     std::string method = "robust", types = "M,I,C2,C,T,Z,S,W";
@@ -193,6 +193,20 @@ TypeSet parse_types(const std::string& text) {
     return types;
 }
 
+/// --regions: N or N,x|y|z.
+Regions parse_regions(const std::string& text) {
+    constexpr int kMost = 10000;
+    const std::vector<std::string> words = split_at_commas(text);
+    const auto count = to_number<int>(words.front());
+    const std::size_t axis = words.size() == 2 ? std::string_view("xyz").find(words.back()) : 0;
+    if (!count || *count < 1 || *count > kMost || words.size() > 2 ||
+        (words.size() == 2 && (words.back().size() != 1 || axis == std::string_view::npos)))
+        fail_value("--regions", text,
+                   "a whole number from 1 to " + std::to_string(kMost) +
+                       " is needed, and the axis x, y or z if wanted, such as 8 or 8,z");
+    return {*count, words.size() == 2 ? std::optional(static_cast<int>(axis)) : std::nullopt};
+}
+
 Method parse_method(const std::string& text) {
     if (text == "robust") return Method::robust;
     if (text == "paper") return Method::paper;
@@ -264,6 +278,8 @@ void declare(CLI::App& detect, Typed& typed) {
     add("--threads", typed.threads, "N", "Most threads to use (default: 0, all cores)");
     add("--time-limit", typed.time_limit, "S",
         "Stop after so many seconds since the start, with what is found");
+    add("--regions", typed.regions, "N[,x|y|z]",
+        "Method paper: cycles inside N slabs of equal height only (default: 1, along the longest extent)");
     add("--columns", typed.columns, "x,y,label", "Meaning of the columns of points: x, y, z, label or skip");
     detect.add_flag("--all", typed.all, "List what follows from others as well");
     detect.add_flag("--levels", typed.levels,
@@ -350,6 +366,12 @@ Options checked(const Typed& typed) {
     if (options.detect.max_tolerance && *options.detect.max_tolerance < options.detect.resolution)
         fail("--max-tolerance " + typed.max_tolerance + " is below the resolution of " + typed.resolution +
              "; raise it, or lower --resolution");
+    if (!typed.regions.empty()) {
+        options.detect.regions = parse_regions(typed.regions);
+        if (options.detect.method != Method::paper)
+            fail("--regions " + typed.regions +
+                 ": only method paper searches region by region; add --method paper");
+    }
     if (!typed.columns.empty()) options.read_points.columns = parse_columns(typed.columns);
     constexpr int kMostListed = 1000000000, kMostThreads = 1024;
     options.limit = typed.limit.empty() ? kTableLimit : parse_count("--limit", typed.limit, kMostListed);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages of the groups named (of scripts/packages.txt) that are missing.
-# Usage: scripts/install_packages.sh GROUP...     groups: build test docs lint
+# Usage: scripts/install_packages.sh GROUP...     groups: build test bench docs lint
 set -euo pipefail
 cd "$(dirname "$0")"
 

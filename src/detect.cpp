@@ -8,7 +8,7 @@
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
 
-#include "cycles/detect_cycles.hpp"
+#include "cycles/regions.hpp"
 #include "parallel_for.hpp"
 #include "points/cloud.hpp"
 #include "points/diameter.hpp"
@@ -28,6 +28,8 @@ namespace {
 /// 24 n^2 bytes of distances are 5.4 GB then.
 constexpr std::size_t kMostPoints = 15000;
 
+constexpr int kMostRegions = 10000;
+
 /// Method `robust` chooses the tolerance of each symmetry itself, up to this share of the diameter.
 constexpr double kLargestTolerance = 0.1;
 
@@ -46,6 +48,13 @@ void check_options(const DetectOptions& options, const RunContext& context) {
         if (*options.max_tolerance < options.resolution)
             refuse("max_tolerance: must not be below the resolution");
     }
+    const Regions& regions = options.regions;
+    if (regions.count < 1 || regions.count > kMostRegions)
+        refuse("regions: the number of slabs must be from 1 to " + std::to_string(kMostRegions));
+    if (regions.axis && (*regions.axis < 0 || *regions.axis > 2))
+        refuse("regions: the axis must be 0, 1 or 2");
+    if (regions.count > 1 && options.method != Method::paper)
+        refuse("regions: only method paper searches region by region");
     if (context.threads < 0) refuse("threads: must not be negative");
 }
 
@@ -121,13 +130,26 @@ void measure_largest_first(const Measure& measure, RunMonitor& monitor, DetectRe
     all.resize(done);
 }
 
+/// The cycles of the kinds asked for.
+CycleSearchResult search_cycles(const Scene& scene, const DetectOptions& options, RunMonitor& monitor,
+                                std::vector<Diagnostic>& diagnostics) {
+    // Pairs need no cycles; a run that asks for pairs alone does not pay for them.
+    if ((options.types & cycle_types()).empty()) return {};
+    monitor.begin_stage("cycles", 2 * static_cast<std::size_t>(scene.size()));
+    auto [search, axis, ambiguous] = detect_cycles_in_regions(scene, options.regions, monitor);
+    if (options.regions.count > 1)
+        diagnostics.push_back(
+            {"regions", "cycles were searched only inside " + std::to_string(options.regions.count) +
+                            " slabs of equal height along " + "xyz"[axis] + "; " + std::to_string(ambiguous) +
+                            " that a point of another slab makes ambiguous were left out"});
+    std::erase_if(search.cycles, [&](const Cycle& c) { return (c.types & options.types).empty(); });
+    return std::move(search);
+}
+
 void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
     const auto start = std::chrono::steady_clock::now();
-    // Pairs need no cycles; a run that asks for pairs alone does not pay for them.
-    CycleSearchResult search;
-    if (!(options.types & cycle_types()).empty()) search = detect_cycles(scene, monitor);
+    CycleSearchResult search = search_cycles(scene, options, monitor, result.diagnostics);
     result.cycles = std::move(search.cycles);
-    std::erase_if(result.cycles, [&](const Cycle& c) { return (c.types & options.types).empty(); });
     result.timing.cycles_s = seconds_since(start);
 
     const auto after_cycles = std::chrono::steady_clock::now();
@@ -175,6 +197,8 @@ DetectResult detect(const PointSet& points, const DetectOptions& options, const 
 
     DetectResult result;
     result.options = options;
+    if (options.regions.axis == 2 && points.dimension == 2)
+        throw Error(ErrorCode::invalid_option, "regions: points in the plane have no z");
     result.diameter = diameter(points.positions);
     if (!std::isfinite(result.diameter))
         throw Error(ErrorCode::invalid_input, "the points are so far apart that their distances overflow");

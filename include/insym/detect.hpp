@@ -20,12 +20,20 @@ enum class Method {
     paper,   ///< cycles and clusters of consistent cycles, as in Li, Langbein and Martin 2007
 };
 
+/// The remedy of Li, Langbein and Martin for large sets, of method paper: cycles are searched inside slabs of
+/// equal height, symmetries over all of them. What crosses a border of slabs is not found.
+struct Regions {
+    int count = 1;            ///< of slabs, 1 to 10,000; 1: all points at once
+    std::optional<int> axis;  ///< 0, 1, 2: x, y, z (z not in the plane); none: that of the longest extent
+};
+
 /// What to look for. The defaults suit exact and slightly noisy models.
 struct DetectOptions {
     Method method = Method::robust;
     TypeSet types = TypeSet::all();       ///< kinds to look for; not empty
     double resolution = 1e-6;             ///< share of the diameter, in (0, 1): equal lengths
     std::optional<double> max_tolerance;  ///< share of the diameter, in [resolution, 1]; none: auto
+    Regions regions;                      ///< method robust takes the default only
 };
 
 /// The tolerances over which something holds, in the input's unit; max may be infinite.

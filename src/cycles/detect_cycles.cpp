@@ -393,7 +393,6 @@ bool Expansion::extend(double& tolerance) {
 }  // namespace
 
 CycleSearchResult detect_cycles(const Scene& scene, RunMonitor& monitor) {
-    monitor.begin_stage("cycles", 2 * static_cast<std::size_t>(scene.size()));
     const Fourths fourths(scene, monitor);
     FailedSeeds failed(fourths);
     tbb::enumerable_thread_specific<Expansion> expansions(

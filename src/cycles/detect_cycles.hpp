@@ -15,7 +15,7 @@ struct CycleSearchResult {
 
 /// All cycles of three points and more that branch out from the seeds. Parallel over the apexes of
 /// the seeds; the same result for any number of threads. Stops early, with the cycles found so far,
-/// when `monitor` says so.
+/// when `monitor` says so; advances its stage twice for each point.
 CycleSearchResult detect_cycles(const Scene& scene, RunMonitor& monitor);
 
 }  // namespace insym

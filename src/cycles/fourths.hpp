@@ -42,6 +42,8 @@ public:
     using List = std::vector<Candidate>;
 
     Fourths(const Scene& scene, RunMonitor& monitor);
+    /// Stores nothing, for few questions.
+    explicit Fourths(const Scene& scene) : scene_(scene) {}
 
     /// The points D for which (a, b, c, D) satisfies C1, least E_min first, ties by index. The list ends with
     /// nobody, at an infinite E_min. It may lie in `scratch`.

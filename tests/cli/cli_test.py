@@ -346,6 +346,22 @@ def test_other_numbers(box):
     assert_bad_numbers(box, "--time-limit", ["0", "-1", "nan", "inf", "x"])
 
 
+def test_regions(box):
+    assert_bad_numbers(box, "--regions", ["0", "-1", "1.5", "x", "10001", "2,q", "2,xy", "2,", ",z", "2,x,y", "2 x"])
+    box.points("a.xyz", np.vstack([ring(6), ring(6) + [0, 0, 5]]))
+    assert_fails(box, USAGE, "add --method paper", "detect", "a.xyz", "--regions", "2")
+    box.points("plane.xyz", ring(6, 2))
+    assert_fails(box, USAGE, "no z", "detect", "plane.xyz", "--method", "paper", "--regions", "2,z")
+    whole, one, two = (box.report("a.xyz", "--method", "paper", *more, "--quiet")
+                       for more in ([], ["--regions", "1,y"], ["--regions", "2,z"]))
+    for report in (whole, one, two):
+        del report["timing"]
+    assert one == whole and not whole["diagnostics"]
+    assert [d["code"] for d in two["diagnostics"]] == ["regions"], two["diagnostics"]
+    assert all(max(c["points"]) < 6 or min(c["points"]) >= 6 for c in two["cycles"]), two["cycles"]
+    assert any(s["type"] == "C" and s["order"] == 6 and len(s["cycles"]) == 2 for s in two["symmetries"])
+
+
 def test_bad_columns(box):
     assert_bad_numbers(box, "--columns", ["x", "x,y,q", "x,x,y", "x,y,"])
 

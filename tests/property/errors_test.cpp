@@ -51,6 +51,14 @@ BadCall bad_max_tolerance(const std::string& name, double value) {
             [value](Call& call) { call.options.max_tolerance = value; }};
 }
 
+BadCall bad_regions(const std::string& name, Regions value, Method method = Method::paper) {
+    return {std::string("regions_").append(name), ErrorCode::invalid_option, "regions",
+            [value, method](Call& call) {
+                call.options.method = method;
+                call.options.regions = value;
+            }};
+}
+
 BadCall bad_coordinate(const std::string& name, double value) {
     return {std::string("coordinate_").append(name), ErrorCode::invalid_input, "",
             [value](Call& call) { call.points.positions[3][1] = value; }};
@@ -76,6 +84,18 @@ std::vector<BadCall> bad_calls() {
         {"types_empty", ErrorCode::invalid_option, "types", [](Call& call) { call.options.types = {}; }},
         {"threads_negative", ErrorCode::invalid_option, "threads",
          [](Call& call) { call.context.threads = -1; }},
+        bad_regions("none", {0, {}}),
+        bad_regions("negative", {-3, {}}),
+        bad_regions("too_many", {10001, {}}),
+        bad_regions("fourth_axis", {2, 3}),
+        bad_regions("negative_axis", {2, -1}),
+        bad_regions("robust", {2, {}}, Method::robust),
+        {"regions_z_in_the_plane", ErrorCode::invalid_option, "regions",
+         [](Call& call) {
+             call.points = point_set(polygon(6).points, 2);
+             call.options.method = Method::paper;
+             call.options.regions = {2, 2};
+         }},
         bad_coordinate("nan", kNaN),
         bad_coordinate("infinite", kInfinity),
         bad_coordinate("minus_infinite", -kInfinity),
