@@ -52,9 +52,13 @@ public:
             const double share = static_cast<double>(n) / 100;
             return static_cast<std::size_t>(40 + at_100 / (share * share));
         };
+        // The same in looks at a point: many are needed where noise hides which are meant.
+        const auto looked = [&](double looks) {
+            return static_cast<std::size_t>(100 + looks / static_cast<double>(n));
+        };
         offer(frames(cloud_, Vector3d::Zero(), reach, budget(1000)));
         offer_votes(reach, budget(600) + std::min<std::size_t>(n / 4, 500));
-        offer_groups(reach, {budget(3000) + n / 16, budget(1000) + n / 32, budget(200) + n / 8, 1e6});
+        offer_groups(reach, {looked(3e5) + n / 4, looked(1e5) + n / 8, budget(200) + n / 8, 1e6});
         offer_roots();
         close_products();
         RobustResult result;
@@ -124,10 +128,10 @@ private:
         return out;
     }
 
-    /// The more agree exactly, the less is meant by those that stand alone.
+    /// Where candidates agree exactly, those that do come first, and fewer are needed.
     static std::size_t tries(const Agreed& found, std::size_t most) {
-        const std::size_t alone = std::max(most / 8, most - std::min(most, 4 * found.agreeing));
-        return std::min(most, found.agreeing + alone);
+        constexpr std::size_t kSome = 4;
+        return found.agreeing < kSome ? most : std::min(most / 4, found.agreeing + most / 32);
     }
 
     /// A few groups at a time: the search for candidates needs no knowledge of what was found.
