@@ -75,9 +75,12 @@ private:
                 cloud_.dimension() == 2 ? SymmetryType::half_turn : SymmetryType::inversion};
     }
 
+    bool all_pairs_vote() const { return cloud_.size() * (cloud_.size() - 1.0) / 2 <= kMostPairs; }
+
     void offer_votes(double reach, std::size_t most) {
         const std::vector<SymmetryType> types = types_voted();
-        const PointPairs pairs = spread_pairs(cloud_, kMostPairs);
+        // Where groups vote by themselves, a sample finds what covers much of the set.
+        const PointPairs pairs = spread_pairs(cloud_, all_pairs_vote() ? kMostPairs : kMostPairs / 5);
         std::vector<std::vector<Hypothesis>> votes(types.size());
         monitor_.begin_stage("votes of pairs", types.size());
         parallel_for(types.size(),
@@ -144,8 +147,7 @@ private:
         const auto budget_of = [&](std::size_t k) {
             return budget.between(before[k] / before.back(), before[k + 1] / before.back());
         };
-        // Where all pairs have voted, no group has more to say.
-        const bool parts = cloud_.size() * (cloud_.size() - 1.0) / 2 > kMostPairs;
+        const bool parts = !all_pairs_vote();  // else no group has more to say
         std::vector<Suggestions> found(kAtATime);
         for (std::size_t first = 0; first < groups.size() && !monitor_.should_stop(); first += kAtATime) {
             const std::size_t count = std::min(kAtATime, groups.size() - first);
