@@ -5,7 +5,7 @@ Oracles: check_report.py (the definitions: no violation), known answers: how man
 which length the vertices of a model hold (shared/data/README.md, the paper's kind of models), and the same
 report from one thread and from all.
 
-Groups of cases, for ctest one entry each: a model's name, `xyz`, `examples`, `plant1`, `plant2`. Without
+Groups of cases, for ctest one entry each: a model's name, `xyz`, `examples`, `plant1`, `plant2`, `ties`. Without
 --full a report's cycles and symmetries are sampled (check_report's --max); with it nearly all are checked.
 """
 import subprocess
@@ -135,13 +135,27 @@ def check(checker_module, options, path, max_tolerance, known):
     return [f"{path.name} at {max_tolerance:g}: {sentence}" for sentence in bad]
 
 
+def ties(options):
+    """Rows of equal pins: many extensions tie exactly, and which is taken must not depend on who asked first."""
+    path = options.shared / "data" / "dsub37.step"
+    if not path.exists():
+        golden.skip(f"{path} is absent")
+    one, two = (without_timing(golden.detect(options.insym, path, 0.005, "--types", "C,T,Z,S,W", "--threads", threads))
+                for threads in ("1", "2"))
+    print(f"{path.name} at 0.005: {len(one['cycles'])} cycles with one thread, {len(two['cycles'])} with two")
+    return equal("dsub37.step at 0.005: the report of two threads is that of one", two == one, True)
+
+
 def main():
     parser = golden.arguments(__doc__)
     parser.add_argument("groups", nargs="*", help="cases to run; none: all")
     options = parser.parse_args()
     checker_module = golden.specification(options.shared, "check_report")
     wrong = []
-    for group in options.groups or [*TOLERANCES, "xyz", "examples", "plant1", "plant2"]:
+    for group in options.groups or [*TOLERANCES, "xyz", "examples", "plant1", "plant2", "ties"]:
+        if group == "ties":
+            wrong += ties(options)
+            continue
         with tempfile.TemporaryDirectory() as folder:
             for case in cases_of(group, options, folder):
                 wrong += check(checker_module, options, *case)
