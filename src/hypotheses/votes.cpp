@@ -144,7 +144,11 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, const PointP
 
     std::vector<double> sizes;
     const double finest = 8 * cloud.scene().resolution;
-    for (double size = 2 * reach; size > finest; size /= 8) sizes.push_back(size);
+    double coarse = 2 * reach;
+    while (coarse > finest) {
+        sizes.push_back(coarse);
+        coarse /= 8;
+    }
     sizes.push_back(finest);
 
     struct Ranked {
