@@ -2,10 +2,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <unordered_map>
 
 #include "hypotheses/generators.hpp"
+#include "hypotheses/places.hpp"
 
 namespace insym {
 namespace {
@@ -14,21 +14,14 @@ using Eigen::Vector3d;
 
 /// An isometry or its inverse, as the cells that the images of two points outside the set fall in.
 std::uint64_t key_of(const RigidMap& map, SymmetryType type, double radius, double cell) {
-    const Vector3d first = radius * Vector3d(0.31, 0.74, 0.597),
-                   second = radius * Vector3d(-0.69, 0.21, -0.69);
+    const Vector3d first = radius * kOutside, second = radius * Vector3d(-0.69, 0.21, -0.69);
     const auto back = [&](const Vector3d& p) -> Vector3d { return map.linear.transpose() * (p - map.shift); };
     std::array<Vector3d, 2> images{map(first), map(second)};
     const std::array<Vector3d, 2> inverse{back(first), back(second)};
-    // A direction that no part is likely to be aligned with says which of the two it is.
-    const Vector3d askew(0.6120, 0.3532, 0.7075);
-    if ((images[0] - inverse[0]).dot(askew) < 0) images = inverse;
+    if ((images[0] - inverse[0]).dot(kAskew) < 0) images = inverse;
     auto key = static_cast<std::uint64_t>(type);
     for (const Vector3d& image : images)
-        for (const double x : image) {
-            key ^= static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / cell)));
-            key *= 0x9E3779B97F4A7C15ULL;
-            key ^= key >> 29U;
-        }
+        for (const double x : image) key = mixed(key, static_cast<std::int64_t>(std::floor(x / cell)));
     return key;
 }
 
@@ -44,8 +37,8 @@ Agreed agreeing_first(const Cloud& cloud, const std::vector<Candidate>& candidat
     std::vector<Voted> all;
     std::unordered_map<std::uint64_t, std::size_t> known;
     for (std::size_t k = 0; k < candidates.size(); ++k) {
-        const Hypothesis h = hypothesis_of(cloud, candidates[k]);
-        if (h.off <= kExact * resolution) {
+        if (disagreement(cloud, candidates[k]) <= kExact * resolution) {
+            const Hypothesis h = hypothesis_of(cloud, candidates[k]);
             const auto [place, is_new] =
                 known.try_emplace(key_of(h.map, h.type, cloud.radius(), kCell * resolution), all.size());
             if (!is_new) {

@@ -292,8 +292,6 @@ Hypothesis half_turn_of(const Cloud& cloud, const std::array<int, 4>& points) {
     h.center = (a + mate + b + other) / 4;
     h.map.shift = h.center - h.map.linear * h.center;
     h.radius = std::max({(a - mate).norm(), (b - other).norm(), (a + mate - b - other).norm() / 2}) / 2;
-    h.off = std::max(std::abs((a - b).norm() - (mate - other).norm()),
-                     std::abs((a - other).norm() - (mate - b).norm()));
     h.from = {points[0], points[2], -1, -1};
     h.to = {points[1], points[3], -1, -1};
     return h;
@@ -312,11 +310,27 @@ std::vector<Candidate> half_turns(const Cloud& cloud, const SearchGroup& group, 
     return HalfTurnSearch(cloud, group, reach, most).run(looks);
 }
 
+double disagreement(const Cloud& cloud, const Candidate& candidate) {
+    const std::array<int, 4>& ids = candidate.points;
+    const auto apart = [&](std::size_t i, std::size_t j) { return (cloud[ids[i]] - cloud[ids[j]]).norm(); };
+    if (candidate.type == SymmetryType::half_turn)
+        return std::max(std::abs(apart(0, 2) - apart(1, 3)), std::abs(apart(0, 3) - apart(1, 2)));
+    double off = std::max(std::abs(apart(0, 1) - apart(1, 2)), cloud.scene().resolution);
+    if (ids[3] >= 0)
+        off = std::max({off, std::abs(apart(1, 2) - apart(2, 3)), std::abs(apart(0, 2) - apart(1, 3))});
+    return off;
+}
+
 Hypothesis hypothesis_of(const Cloud& cloud, const Candidate& candidate) {
     const std::array<int, 4>& ids = candidate.points;
-    if (candidate.type == SymmetryType::half_turn) return half_turn_of(cloud, ids);
     Hypothesis h;
+    if (candidate.type == SymmetryType::half_turn) {
+        h = half_turn_of(cloud, ids);
+        h.off = disagreement(cloud, candidate);
+        return h;
+    }
     h.type = candidate.type;
+    h.off = disagreement(cloud, candidate);
     const auto at = [&](std::size_t k) -> const Vector3d& { return cloud[ids[k]]; };
     const std::size_t length = ids[3] < 0 ? 3 : 4;
     if (length == 3) {
@@ -331,11 +345,6 @@ Hypothesis hypothesis_of(const Cloud& cloud, const Candidate& candidate) {
         h.from[k] = ids[k];
         h.to[k] = ids[k + 1];
     }
-    const double step = (at(0) - at(1)).norm();
-    h.off = std::max(std::abs(step - (at(1) - at(2)).norm()), cloud.scene().resolution);
-    if (length == 4)
-        h.off = std::max({h.off, std::abs((at(1) - at(2)).norm() - (at(2) - at(3)).norm()),
-                          std::abs((at(0) - at(2)).norm() - (at(1) - at(3)).norm())});
     return h;
 }
 

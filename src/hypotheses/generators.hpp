@@ -16,7 +16,7 @@ using SearchGroup = std::vector<int>;
 
 /// Every class of equal labels that is small enough. Of a larger one: its points farthest out (mates under a
 /// symmetry of the whole stand there together), overlapping neighbourhoods, and points whose neighbours lie
-/// alike, as those of the copies of one part do. O(n log n) points in all.
+/// alike, as those of the copies of one part do. In all about n^1.2 points.
 std::vector<SearchGroup> search_groups(const Cloud& cloud, std::size_t most);
 
 /// Pairs of one label, by index: all of them, or those of the points of some with all, spread over the set,
@@ -59,6 +59,9 @@ struct Agreed {
 /// Candidates that say the same isometry to the resolution are one: the best of them stays, and what most of
 /// them say comes first; the others keep their order. O(candidates).
 Agreed agreeing_first(const Cloud& cloud, const std::vector<Candidate>& candidates);
+
+/// How far its distances are from agreeing; at least the resolution but for half-turns.
+double disagreement(const Cloud& cloud, const Candidate& candidate);
 
 /// The isometry that a candidate stands for.
 Hypothesis hypothesis_of(const Cloud& cloud, const Candidate& candidate);

@@ -5,15 +5,13 @@
 #include <numeric>
 
 #include "hypotheses/generators.hpp"
+#include "hypotheses/places.hpp"
 
 namespace insym {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-/// A direction that no part is likely to be aligned with.
-const Vector3d kAskew = Vector3d(0.6120, 0.3532, 0.7075).normalized();
 
 struct Ballot {
     Vector3d place;  // where in the space of isometries
@@ -43,13 +41,7 @@ Cell home_of(const Vector3d& place, double size) {
 }
 
 std::uint32_t key_of(const Cell& cell) {
-    const auto mix = [](std::uint64_t h) {
-        h ^= h >> 31U;
-        h *= 0x9E3779B97F4A7C15ULL;
-        return h ^ (h >> 29U);
-    };
-    const auto at = [&](int axis) { return static_cast<std::uint64_t>(cell[axis]); };
-    return static_cast<std::uint32_t>(mix(at(0) + mix(at(1) + mix(at(2)))) >> 32U);
+    return static_cast<std::uint32_t>(mixed(mixed(mixed(0, cell[2]), cell[1]), cell[0]) >> 32U);
 }
 
 /// Votes by cell: a hash table with open addresses, small, as there are many cells and most hold one vote.
@@ -136,7 +128,7 @@ PointPairs pairs_within(const SearchGroup& group) {
 
 std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, const PointPairs& pairs, double reach,
                              std::size_t most) {
-    const Vector3d outside = 2.2 * cloud.radius() * Vector3d(0.31, 0.74, 0.597).normalized();
+    const Vector3d outside = 2.2 * cloud.radius() * kOutside.normalized();
     const Vector3d far = cloud.dimension() == 2 ? Vector3d(outside.x(), outside.y(), 0) : outside;
     std::vector<Ballot> ballots;
     ballots.reserve(pairs.size());

@@ -114,7 +114,8 @@ private:
         }
     };
 
-    Suggestions suggestions(const SearchGroup& group, double reach, const GroupBudget& budget, bool part) {
+    Suggestions suggestions(const SearchGroup& group, double reach, const GroupBudget& budget,
+                            bool with_votes) {
         // So many candidates are kept for each that is tried: most of them say the same, or what was found.
         constexpr std::size_t kSpare = 20, kLeast = 20000;  // to keep some costs little
         const auto kept = [&](std::size_t tried) { return std::max(kLeast, kSpare * tried); };
@@ -123,8 +124,7 @@ private:
         out.chains = agreeing_first(cloud_, chains(cloud_, group, reach, kept(budget.chains)));
         out.half_turns =
             agreeing_first(cloud_, half_turns(cloud_, group, reach, budget.looks, kept(budget.half_turns)));
-        if (!part) return out;
-        // The pairs of small classes have voted already.
+        if (!with_votes) return out;
         const PointPairs pairs = pairs_within(group);
         for (const SymmetryType type : types_voted())
             out.voted.push_back(vote(cloud_, type, pairs, reach, budget.votes));
@@ -147,12 +147,12 @@ private:
         const auto budget_of = [&](std::size_t k) {
             return budget.between(before[k] / before.back(), before[k + 1] / before.back());
         };
-        const bool parts = !all_pairs_vote();  // else no group has more to say
+        const bool with_votes = !all_pairs_vote();
         std::vector<Suggestions> found(kAtATime);
         for (std::size_t first = 0; first < groups.size() && !monitor_.should_stop(); first += kAtATime) {
             const std::size_t count = std::min(kAtATime, groups.size() - first);
             parallel_for(count, [&](std::size_t k) {
-                found[k] = suggestions(groups[first + k], reach, budget_of(first + k), parts);
+                found[k] = suggestions(groups[first + k], reach, budget_of(first + k), with_votes);
             });
             for (std::size_t k = 0; k < count; ++k) {
                 const GroupBudget most = budget_of(first + k);
@@ -244,22 +244,11 @@ private:
         }
     }
 
-    /// How many points a support carries, from or to or in place.
-    int covered(const Support& s) const {
-        std::vector<char> in(static_cast<std::size_t>(cloud_.size()), 0);
-        for (const auto& [from, to] : s.links)
-            in[static_cast<std::size_t>(from)] = in[static_cast<std::size_t>(to)] = 1;
-        for (int i = 0; i < cloud_.size(); ++i)
-            if ((s.map(cloud_[i]) - cloud_[i]).norm() <= 1.5 * s.tolerance)
-                in[static_cast<std::size_t>(i)] = 1;
-        return static_cast<int>(std::count(in.begin(), in.end(), 1));
-    }
-
     /// Of nearly the whole set, and such as some point can stay in place under: part of a finite group.
     bool of_group(const Support& s) const {
         return s.type != SymmetryType::translation && s.type != SymmetryType::screw &&
                s.type != SymmetryType::glide_reflection && s.significance < kListed &&
-               5 * covered(s) >= 4 * cloud_.size();
+               5 * gatherer_.carried(s, 1.5 * s.tolerance) >= 4 * cloud_.size();
     }
 
     /// Of any kind; what it is comes out when it is gathered.

@@ -164,14 +164,18 @@ Gatherer::Gatherer(const Cloud& cloud, const Significance& significance, double 
 bool Gatherer::whole(const Support& support) const {
     constexpr double kShareOfGap = 0.08;
     const double reach = std::max(kShareOfGap * cloud_.gap(), cloud_.scene().resolution);
-    if (support.tolerance > reach) return false;
+    return support.tolerance <= reach && carried(support, reach) == cloud_.size();
+}
+
+int Gatherer::carried(const Support& support, double reach) const {
     std::vector<char> in(static_cast<std::size_t>(cloud_.size()), 0);
     for (const auto& [from, to] : support.links)
         in[static_cast<std::size_t>(from)] = in[static_cast<std::size_t>(to)] = 1;
+    int count = 0;
     for (int i = 0; i < cloud_.size(); ++i)
-        if (in[static_cast<std::size_t>(i)] == 0 && (support.map(cloud_[i]) - cloud_[i]).norm() > reach)
-            return false;
-    return true;
+        if (in[static_cast<std::size_t>(i)] != 0 || (support.map(cloud_[i]) - cloud_[i]).norm() <= reach)
+            ++count;
+    return count;
 }
 
 void Gatherer::link(SymmetryType type, const RigidMap& map, double reach, const Region& region,
@@ -206,13 +210,13 @@ void Gatherer::link(SymmetryType type, const RigidMap& map, double reach, const 
         });
         std::sort(out.from.begin(), out.from.end());
     }
-    // A pair runs both ways, and nothing else does; a ball may hold one end alone.
-    const bool pairs = is_pair_type(type), half = !region.everywhere();
+    // A pair runs both ways, and nothing else does. A ball about the middle of pairs holds both ends.
+    const bool pairs = is_pair_type(type);
     for (const int i : out.from) {
         const int j = out.next[static_cast<std::size_t>(i)];
         if (j < 0) continue;
         const bool back = out.next[static_cast<std::size_t>(j)] == i;
-        if (pairs ? back || half : !back) continue;
+        if (pairs ? back : !back) continue;
         out.next[static_cast<std::size_t>(i)] = -1;
         --out.count;
         if (!pairs) {
@@ -285,6 +289,7 @@ std::vector<std::pair<int, int>> Gatherer::links_within(const Linked& linked, do
         if (in(i) || closes(i)) links.emplace_back(i, next(i));
     return links;
 }
+
 RigidMap Gatherer::refit(SymmetryType type, const std::vector<std::pair<int, int>>& pairs,
                          const RigidMap& old) const {
     std::vector<Link> links;

@@ -41,6 +41,9 @@ public:
     /// All points are carried or stay in place, and no point is off by as much as could be another place.
     bool whole(const Support& support) const;
 
+    /// How many points a support carries, from or to, or leaves in place to within `reach`. O(n).
+    int carried(const Support& support, double reach) const;
+
     const std::vector<double>& levels() const { return levels_; }
     double reach() const { return levels_.back(); }
 

@@ -121,6 +121,84 @@ RC_GTEST_PROP(Robust, threads_do_not_change_a_bit, ()) {
     RC_ASSERT(difference_in_bits(robust(points, 1), robust(points, 4)) == "");
 }
 
+namespace {
+
+/// A local pattern, the kind it is meant as, and its points' numbers in the set.
+struct LocalPattern {
+    SymmetryType type = SymmetryType::mirror;
+    std::set<int> points;
+};
+
+/// Eight patterns of some 40 points, each of a place and a pose of its own, among scattered points. So many
+/// points that the groups, the neighbourhoods and the votes of each group are reached.
+std::vector<LocalPattern> local_patterns(PointSet& set, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    const auto scatter = [&](double size) {
+        return Point{uniform(random, -size, size), uniform(random, -size, size),
+                     uniform(random, -size, size)};
+    };
+    std::vector<LocalPattern> patterns;
+    for (int k = 0; k < 8; ++k) {
+        std::vector<Point> points;
+        const SymmetryType type = k % 4 == 0   ? SymmetryType::mirror
+                                  : k % 4 == 1 ? SymmetryType::half_turn
+                                  : k % 4 == 2 ? SymmetryType::rotation
+                                               : SymmetryType::translation;
+        for (int m = 0; m < (type == SymmetryType::rotation || type == SymmetryType::translation ? 5 : 20);
+             ++m) {
+            const Point p = scatter(3);
+            for (int copy = 0; copy < 8; ++copy) {
+                const double a = std::numbers::pi * copy / 4;
+                if (type == SymmetryType::rotation)
+                    points.push_back({p[0] * std::cos(a) - p[1] * std::sin(a),
+                                      p[0] * std::sin(a) + p[1] * std::cos(a), p[2]});
+                if (type == SymmetryType::translation) points.push_back({p[0] + 7.0 * copy, p[1], p[2]});
+            }
+            if (type == SymmetryType::mirror || type == SymmetryType::half_turn) {
+                points.push_back(p);
+                points.push_back({-p[0], type == SymmetryType::mirror ? p[1] : -p[1], p[2]});
+            }
+        }
+        // Turned about two axes and put somewhere.
+        const double a = uniform(random, 0, 6.28), b = uniform(random, 0, 6.28);
+        const Point at = scatter(150);
+        LocalPattern pattern{type, {}};
+        for (const Point& p : points) {
+            const double x = p[0] * std::cos(a) - p[1] * std::sin(a),
+                         y = p[0] * std::sin(a) + p[1] * std::cos(a);
+            pattern.points.insert(static_cast<int>(set.size()));
+            set.positions.push_back({x + at[0], y * std::cos(b) - p[2] * std::sin(b) + at[1],
+                                     y * std::sin(b) + p[2] * std::cos(b) + at[2]});
+        }
+        patterns.push_back(std::move(pattern));
+    }
+    for (int k = 0; k < 600; ++k) set.positions.push_back(scatter(150));
+    set.dimension = 3;
+    return patterns;
+}
+
+}  // namespace
+
+// Oracle: what was planted; and the same bits for any number of threads.
+TEST(RobustLocal, PatternsOfALargeSetAreFoundWhole) {
+    PointSet set;
+    const std::vector<LocalPattern> patterns = local_patterns(set, 7);
+    const DetectResult result = robust(set, 1);
+    ASSERT_EQ(result.points.size(), set.size());
+    for (const LocalPattern& pattern : patterns) {
+        const bool found =
+            std::any_of(result.symmetries.begin(), result.symmetries.end(), [&](const Symmetry& s) {
+                if (s.type != pattern.type || s.significance > -10) return false;
+                std::set<int> moved;
+                for (const Orbit& o : s.cycles) moved.insert(o.points.begin(), o.points.end());
+                return moved == pattern.points;
+            });
+        EXPECT_TRUE(found) << "kind " << static_cast<int>(pattern.type) << ", from point "
+                           << *pattern.points.begin();
+    }
+    EXPECT_EQ(difference_in_bits(result, robust(set, 4)), "");
+}
+
 // Every link is met within the tolerance that the symmetry says; labels never mix; closed orbits have the
 // order that is said.
 RC_GTEST_PROP(Robust, what_is_listed_holds, ()) {
