@@ -399,7 +399,7 @@ std::optional<Support> Gatherer::settle(SymmetryType type, RigidMap map, double 
 std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double worst) const {
     // What its points agree on so well is not looked for much farther off.
     constexpr double kLever = 12;
-    const double near = std::clamp(kLever * hypothesis.off, 8 * cloud_.scene().resolution, reach());
+    const double near = std::min(reach(), std::max(kLever * hypothesis.off, 8 * cloud_.scene().resolution));
     if (!promising(hypothesis, near)) return std::nullopt;
     const bool central = hypothesis.from[0] < 0;
     const double kept = central ? std::numeric_limits<double>::infinity() : worst;
