@@ -19,6 +19,7 @@ PROGRAM, SOURCES = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 sys.path.insert(0, str(SOURCES / "bench"))
 sys.dont_write_bytecode = True
 import assembly  # noqa: E402
+import kicad_list  # noqa: E402
 
 
 def pattern_points(points, truth, k):
@@ -113,7 +114,42 @@ def check_runner(folder):
     print("sections run:", ", ".join(sorted(written)))
 
 
+def check_kicad_list():
+    """Oracle: the list that is given with the project; names of packages whose pins can be counted."""
+    listing = SOURCES / "../shared/bench/kicad_dev.txt"
+    given = listing.read_text().splitlines() if listing.exists() else []
+    given += ["24 2.54 Package_DIP.3dshapes/DIP-48_W15.24mm_Socket.step",
+              "12 0.5 Package_QFP.3dshapes/TQFP-48-1EP_7x7mm_P0.5mm_EP3.5x3.5mm.step"]
+    for line in given:
+        count, pitch, path = line.split(" ", 2)
+        assert kicad_list.answer(path) == (int(count), float(pitch)), (line, kicad_list.answer(path))
+    assert kicad_list.answer("Package_SO.3dshapes/SOIC_without_a_pitch.step") is None
+
+
+def check_calibration():
+    """Oracle: points scattered without an order have no symmetry that chance would not give."""
+    said = subprocess.run([SOURCES / "bench/calibration.py", PROGRAM, "--sizes", "12,40", "--sets", "2"], check=True,
+                          capture_output=True, text=True).stdout
+    mean, sets = re.search(r"CALIBRATION (\S+) alarms per set, (\d+) sets", said).groups()
+    assert int(sets) == 2 * 5 * 2 and float(mean) <= 0.2, said
+
+
+def check_planted():
+    """The table adds up to what was planted; without the shared programs there is nothing to run."""
+    if not (SOURCES / "../shared/bench/plant.py").exists():
+        print("planted: skipped, ../shared/bench is absent")
+        return
+    said = subprocess.run([SOURCES / "bench/planted.py", PROGRAM, "--seeds", "3", "--count", "8", "--methods", "robust"],
+                          check=True, capture_output=True, text=True).stdout
+    rows = [line for line in said.splitlines() if "| robust |" in line]
+    assert len(rows) == 5 and all(" of 8 (" in r for r in rows), said
+    assert sum(int(n) for n in re.findall(r"first setting, \w+: \d+ of (\d+)", said)) == 8, said
+
+
 check_assembly()
 check_score()
+check_kicad_list()
+check_calibration()
+check_planted()
 with tempfile.TemporaryDirectory() as scratch:
     check_runner(Path(scratch))
