@@ -267,6 +267,18 @@ TEST_P(Model, CuttingCirclesIntoArcsChangesNothing) {
               "");
 }
 
+// Oracle: the same model in STEP. In IGES each face stands alone, with edges and vertices of its own.
+TEST_P(Model, FacesOfIgesAreSewn) {
+    if (too_slow()) GTEST_SKIP() << "too slow with a sanitizer";
+    const Input step = read_model_file(GetParam().string());
+    const ScratchFolder folder;
+    IGESControl_Writer writer("MM", 0);  // 0: trimmed surfaces
+    writer.AddShape(plain_read(GetParam().string()));
+    ASSERT_TRUE(writer.Write(folder.path("faces.igs").c_str()));
+    const Input iges = read_model_file(folder.path("faces.igs"));
+    EXPECT_EQ(difference(step.points, gp_Trsf(), iges.points, 1e-6 * diameter(step.points.positions)), "");
+}
+
 // Oracle: Open CASCADE's own reader and maps. Every face is in one entity, every edge but seams and such.
 void expect_all_entities(const std::string& path) {
     const auto start = std::chrono::steady_clock::now();
