@@ -11,10 +11,12 @@
 #include <GProp_GProps.hxx>
 #include <GeomAdaptor_SurfaceOfLinearExtrusion.hxx>
 #include <GeomAdaptor_SurfaceOfRevolution.hxx>
+#include <Precision.hxx>
 #include <ShapeFix_Face.hxx>
 #include <ShapeFix_Wire.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
+#include <gp_Circ.hxx>
 #include <gp_Cone.hxx>
 #include <gp_Cylinder.hxx>
 #include <gp_Pln.hxx>
@@ -147,7 +149,7 @@ Surface::Surface(const TopoDS_Face& face) {
     if (surface.GetType() == GeomAbs_SurfaceOfRevolution || surface.GetType() == GeomAbs_SurfaceOfExtrusion) {
         // What a line or a circle makes has no better description in some formats.
         if (surface.GetType() == GeomAbs_SurfaceOfRevolution)
-            assign(GeomAdaptor_SurfaceOfRevolution(surface.BasisCurve(), surface.AxeOfRevolution()));
+            assign_revolution(surface);
         else
             assign(GeomAdaptor_SurfaceOfLinearExtrusion(surface.BasisCurve(), surface.Direction()));
         direct = normal_is_outward(face);
@@ -188,6 +190,27 @@ bool Surface::assign(const Adaptor3d_Surface& surface) {
         default:
             return true;
     }
+}
+
+/// Open CASCADE does not say torus where the circle reaches the axis.
+void Surface::assign_revolution(const Adaptor3d_Surface& surface) {
+    const gp_Ax1 about = surface.AxeOfRevolution();
+    const auto curve = surface.BasisCurve();
+    assign(GeomAdaptor_SurfaceOfRevolution(curve, about));
+    if (type != SurfaceType::other || curve->GetType() != GeomAbs_Circle) return;
+    const gp_Circ circle = curve->Circle();
+    const gp_Lin line(about);
+    const double major_radius = line.Distance(circle.Location());
+    const bool in_plane = line.Direction().IsNormal(circle.Axis().Direction(), Precision::Angular()) &&
+                          gp_Pln(circle.Position()).Distance(about.Location()) <= Precision::Confusion();
+    if (!in_plane || major_radius < circle.Radius() - Precision::Confusion()) return;
+    type = SurfaceType::torus;
+    axis = gp_Ax1(
+        about.Location().Translated(gp_Vec(about.Direction()) *
+                                    gp_Vec(about.Location(), circle.Location()).Dot(about.Direction())),
+        about.Direction());
+    radius = major_radius;
+    minor = circle.Radius();
 }
 
 /// The same for a surface whose parameters may run in any direction, seen at the middle of the face.

@@ -32,6 +32,7 @@ struct Surface {
 
 private:
     bool assign(const Adaptor3d_Surface& surface);
+    void assign_revolution(const Adaptor3d_Surface& surface);
     bool normal_is_outward(const TopoDS_Face& face) const;
 };
 
