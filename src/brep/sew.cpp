@@ -40,7 +40,7 @@ Handle(Geom_Circle)
     if (normal.Magnitude() <= gp::Resolution()) return {};
     gp_Ax2 frame(centre, gp_Dir(normal), gp_Dir(start));
     frame.Rotate(frame.Axis(), -first);
-    const Handle(Geom_Circle) circle = new Geom_Circle(frame, through.Value().Radius());
+    Handle(Geom_Circle) circle = new Geom_Circle(frame, through.Value().Radius());
     constexpr int kSamples = 16;
     for (int i = 0; i <= kSamples; ++i) {
         const double t = first + i * (last - first) / kSamples;
@@ -87,6 +87,7 @@ public:
         std::stable_sort(found.begin(), found.end(),
                          [](const auto& a, const auto& b) { return a.first < b.first; });
         std::vector<TopoDS_Shape> shapes;
+        shapes.reserve(found.size());
         for (const auto& [first, shape] : found) shapes.push_back(shape);
         return shapes;
     }

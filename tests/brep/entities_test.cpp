@@ -281,7 +281,7 @@ double largest_gap(const TopoDS_Shape& shape) {
 // vertex is where the curves end, so only faces are left to compare, to that distance, where these miss it.
 TEST_P(Model, FacesOfIgesAreSewn) {
     if (too_slow()) GTEST_SKIP() << "too slow with a sanitizer";
-    if (std::filesystem::file_size(GetParam()) > 1'000'000) GTEST_SKIP() << "takes 10 s; passed by hand";
+    if (std::filesystem::file_size(GetParam()) > 1'000'000) GTEST_SKIP() << "takes 10 s";
     const TopoDS_Shape shape = plain_read(GetParam().string());
     const ScratchFolder folder;
     IGESControl_Writer writer("MM", 0);  // 0: trimmed surfaces
