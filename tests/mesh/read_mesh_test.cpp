@@ -373,7 +373,7 @@ TEST(ReadMeshErrors, DamagedFiles) {
     refused("cut_binary.ply", to_ply(mesh, true).substr(0, to_ply(mesh, true).size() - 60),
             ErrorCode::cannot_read, "");
     const std::string off = to_binary_off(mesh);
-    const std::size_t head = off.find("BINARY\n") + 7, vertices = head + 12, faces = vertices + 8 * 12;
+    const std::size_t head = off.find("BINARY\n") + 7, vertices = head + 12, faces = vertices + 96;
     for (std::size_t size = head; size < off.size(); ++size)
         refused("cut_binary.off", off.substr(0, size), ErrorCode::cannot_read, "damaged");
     const auto with = [&](std::size_t at, std::int32_t number) {
