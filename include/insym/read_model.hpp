@@ -28,6 +28,9 @@ struct ReadModelOptions {
 /// torus that adjoin. What only begins or divides these gives no point: seams, degenerate edges, and, where
 /// edges are chosen, the vertices on one such curve alone. Chosen without edges, all vertices count.
 ///
+/// Faces of an IGES file that stand alone are sewn first, within the resolution that the file names, at least
+/// 1e-6 and at most 1e-4 of the diagonal of its box.
+///
 /// Lengths are in `unit` of the result; BREP files name none and are in mm by Open CASCADE's convention.
 /// Ids are 1-based indices into Open CASCADE's maps (TopExp::MapShapes) of the whole shape's vertices, edges
 /// and faces, which is how FreeCAD (Face1, Edge1, ...) and CadQuery (faces().vals()) number them. Points come

@@ -1,14 +1,18 @@
 // IGES: text to shape.
-#include <filesystem>
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 
+#include <BRepBndLib.hxx>
+#include <Bnd_Box.hxx>
 #include <IFSelect_ReturnStatus.hxx>
 #include <IGESControl_Reader.hxx>
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
 #include <Interface_Check.hxx>
+#include <Precision.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
@@ -17,11 +21,17 @@
 
 #include "brep/model_file.hpp"
 #include "brep/model_shape.hpp"
+#include "brep/sew.hpp"
 
 namespace insym {
 namespace {
 
 constexpr std::size_t kSectionColumn = 72;  ///< of a line; from 0
+
+/// Edges of two faces are one within the resolution that the file names for its coordinates, but no less and
+/// no more than these shares of the diagonal of the model's box: programs write much too small and much too
+/// large ones.
+constexpr double kLeastSewing = 1e-6, kMostSewing = 1e-4;
 
 [[noreturn]] void fail_damaged(const std::string& path, const std::string& why) {
     fail_reading(path, "the IGES file is damaged: " + why);
@@ -55,6 +65,14 @@ PartNames find_names(const IGESControl_Reader& reader) {
     return names;
 }
 
+double sewing_tolerance(const TopoDS_Shape& shape, double resolution) {
+    Bnd_Box box;
+    BRepBndLib::AddClose(shape, box);
+    if (box.IsVoid() || box.IsOpen()) return Precision::Confusion();
+    const double diagonal = std::sqrt(box.SquareExtent());
+    return std::clamp(resolution, kLeastSewing * diagonal, kMostSewing * diagonal);
+}
+
 }  // namespace
 
 ModelShape read_iges(const std::string& path) {
@@ -66,7 +84,11 @@ ModelShape read_iges(const std::string& path) {
     if (model->GlobalCheck()->HasFailed()) fail_damaged(path, in_one_line(model->GlobalCheck()->CFail(1)));
     reader.TransferRoots();
     const double millimetres = model->GlobalSection().UnitValue();
-    return {reader.OneShape(), find_names(reader), find_unit(millimetres).value_or(kMillimetre)};
+    ModelShape result = {reader.OneShape(), find_names(reader), find_unit(millimetres).value_or(kMillimetre)};
+    if (result.shape.IsNull()) return result;
+    const double resolution = model->GlobalSection().Resolution() * millimetres;
+    result.shape = sewn(result.shape, sewing_tolerance(result.shape, resolution), result.names);
+    return result;
 }
 
 }  // namespace insym

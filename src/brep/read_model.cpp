@@ -25,9 +25,10 @@ namespace {
 struct Format {
     const char* name;
     ModelShape (*read)(const std::string& path);
+    bool sewn = false;  ///< its faces must be whole for their edges to be found to be the same
 };
 
-constexpr Format kStep = {"step", read_step}, kIges = {"iges", read_iges}, kBrep = {"brep", read_brep};
+constexpr Format kStep = {"step", read_step}, kIges = {"iges", read_iges, true}, kBrep = {"brep", read_brep};
 
 /// By the ending of the path; null for none of these.
 const Format* find_format(const std::string& path) {
@@ -59,7 +60,7 @@ bool is_finite(const RepresentativePoint& point) {
 
 Input read_with_open_cascade(const std::string& path, const Format& format, const ReadModelOptions& options) {
     // Vertices need no repair, which takes most of the time and puts more of them where seams happen to lie.
-    const OcctSession session(options.edges || options.faces ? Healing::on : Healing::off);
+    const OcctSession session(options.edges || options.faces || format.sewn ? Healing::on : Healing::off);
     const ModelShape model = format.read(path);
     Input input;
     input.path = path;

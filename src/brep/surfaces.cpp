@@ -9,10 +9,14 @@
 #include <BRepGProp.hxx>
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
+#include <GeomAdaptor_SurfaceOfLinearExtrusion.hxx>
+#include <GeomAdaptor_SurfaceOfRevolution.hxx>
+#include <Precision.hxx>
 #include <ShapeFix_Face.hxx>
 #include <ShapeFix_Wire.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
+#include <gp_Circ.hxx>
 #include <gp_Cone.hxx>
 #include <gp_Cylinder.hxx>
 #include <gp_Pln.hxx>
@@ -142,40 +146,86 @@ EntityRole role_of(const Surface& surface, bool surrounds) {
 Surface::Surface(const TopoDS_Face& face) {
     const BRepAdaptor_Surface surface(face, false);
     bool direct = true;
+    if (surface.GetType() == GeomAbs_SurfaceOfRevolution || surface.GetType() == GeomAbs_SurfaceOfExtrusion) {
+        // What a line or a circle makes has no better description in some formats.
+        if (surface.GetType() == GeomAbs_SurfaceOfRevolution)
+            assign_revolution(surface);
+        else
+            assign(GeomAdaptor_SurfaceOfLinearExtrusion(surface.BasisCurve(), surface.Direction()));
+        direct = normal_is_outward(face);
+    } else {
+        direct = assign(surface);
+    }
+    outward = direct == (face.Orientation() != TopAbs_REVERSED);
+}
+
+/// Returns whether the surface's own normal is away from its axis or centre.
+bool Surface::assign(const Adaptor3d_Surface& surface) {
     switch (surface.GetType()) {
         case GeomAbs_Plane:
             type = SurfaceType::plane;
             axis = surface.Plane().Axis();
-            break;
+            return true;
         case GeomAbs_Cylinder:
             type = SurfaceType::cylinder;
             axis = surface.Cylinder().Axis();
             radius = surface.Cylinder().Radius();
-            direct = surface.Cylinder().Direct();
-            break;
+            return surface.Cylinder().Direct();
         case GeomAbs_Cone:
             type = SurfaceType::cone;
             axis = gp_Ax1(surface.Cone().Apex(), surface.Cone().Axis().Direction());
             half_angle = std::abs(surface.Cone().SemiAngle());
-            direct = surface.Cone().Direct();
-            break;
+            return surface.Cone().Direct();
         case GeomAbs_Sphere:
             type = SurfaceType::sphere;
             axis.SetLocation(surface.Sphere().Location());
             radius = surface.Sphere().Radius();
-            direct = surface.Sphere().Direct();
-            break;
+            return surface.Sphere().Direct();
         case GeomAbs_Torus:
             type = SurfaceType::torus;
             axis = surface.Torus().Axis();
             radius = surface.Torus().MajorRadius();
             minor = surface.Torus().MinorRadius();
-            direct = surface.Torus().Direct();
-            break;
+            return surface.Torus().Direct();
         default:
-            break;
+            return true;
     }
-    outward = direct == (face.Orientation() != TopAbs_REVERSED);
+}
+
+/// Open CASCADE does not say torus where the circle reaches the axis.
+void Surface::assign_revolution(const Adaptor3d_Surface& surface) {
+    const gp_Ax1 about = surface.AxeOfRevolution();
+    const auto curve = surface.BasisCurve();
+    assign(GeomAdaptor_SurfaceOfRevolution(curve, about));
+    if (type != SurfaceType::other || curve->GetType() != GeomAbs_Circle) return;
+    const gp_Circ circle = curve->Circle();
+    const gp_Lin line(about);
+    const double major_radius = line.Distance(circle.Location());
+    const bool in_plane = line.Direction().IsNormal(circle.Axis().Direction(), Precision::Angular()) &&
+                          gp_Pln(circle.Position()).Distance(about.Location()) <= Precision::Confusion();
+    if (!in_plane || major_radius < circle.Radius() - Precision::Confusion()) return;
+    type = SurfaceType::torus;
+    axis = gp_Ax1(
+        about.Location().Translated(gp_Vec(about.Direction()) *
+                                    gp_Vec(about.Location(), circle.Location()).Dot(about.Direction())),
+        about.Direction());
+    radius = major_radius;
+    minor = circle.Radius();
+}
+
+/// The same for a surface whose parameters may run in any direction, seen at the middle of the face.
+bool Surface::normal_is_outward(const TopoDS_Face& face) const {
+    const BRepAdaptor_Surface surface(face, true);
+    gp_Pnt point;
+    gp_Vec along_u, along_v;
+    surface.D1((surface.FirstUParameter() + surface.LastUParameter()) / 2,
+               (surface.FirstVParameter() + surface.LastVParameter()) / 2, point, along_u, along_v);
+    gp_Vec off(axis.Location(), point);
+    const gp_Vec direction(axis.Direction());
+    if (type != SurfaceType::sphere) off -= direction * off.Dot(direction);
+    if (type == SurfaceType::torus && off.Magnitude() > 0)
+        off = gp_Vec(axis.Location().Translated(off.Normalized() * radius), point);
+    return along_u.Crossed(along_v).Dot(off) >= 0;
 }
 
 bool Surface::continues(const Surface& other, double tolerance) const {

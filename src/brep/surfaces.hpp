@@ -10,6 +10,8 @@
 #include <gp_Ax1.hxx>
 #include <gp_Pnt.hxx>
 
+class Adaptor3d_Surface;
+
 namespace insym {
 
 enum class SurfaceType { plane, cylinder, cone, sphere, torus, other };
@@ -27,6 +29,11 @@ struct Surface {
 
     /// True for round surfaces that are the same to that length: what parts them is no edge of the shape.
     bool continues(const Surface& other, double tolerance) const;
+
+private:
+    bool assign(const Adaptor3d_Surface& surface);
+    void assign_revolution(const Adaptor3d_Surface& surface);
+    bool normal_is_outward(const TopoDS_Face& face) const;
 };
 
 /// The special point of the faces, which lie on one surface and adjoin, and what is known of them (ids

@@ -18,9 +18,16 @@ constexpr double kLeastShare = 1e-4;
 /// curved face.
 constexpr double kFacetShare = 0.25;
 
+/// A group of regions that meet over smooth edges alone: a face of the part, as far as a mesh can tell.
+struct Group {
+    std::vector<int> regions;
+    double area = 0;
+    Vector3d area_vector = {0, 0, 0}, centroid = {0, 0, 0};
+};
+
 class RegionGrower {
 public:
-    RegionGrower(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges, double flatness)
+    RegionGrower(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges, const Flatness& flatness)
         : mesh_(mesh),
           edges_(edges),
           flatness_(flatness),
@@ -48,6 +55,24 @@ public:
             if (region_[static_cast<std::size_t>(seed)] < 0)
                 regions.push_back(grow(seed, static_cast<int>(regions.size())));
         return regions;
+    }
+
+    /// Makes one region of those that between sharp edges are flat together, to the larger length: an
+    /// approximate plane is triangles that are not quite of one plane, and no curved face. The others of such
+    /// a group are left empty.
+    void merge_nearly_flat(std::vector<FlatRegion>& regions) {
+        for (const Group& group : smooth_groups(regions)) {
+            if (group.regions.size() < 2 || !is_nearly_flat(group, regions)) continue;
+            const int first = group.regions.front();
+            FlatRegion whole{group.centroid, group.area, {}};
+            for (const int i : group.regions) {
+                std::vector<int>& triangles = regions[static_cast<std::size_t>(i)].triangles;
+                whole.triangles.insert(whole.triangles.end(), triangles.begin(), triangles.end());
+                regions[static_cast<std::size_t>(i)] = {{0, 0, 0}, 0, {}};
+            }
+            for (const int t : whole.triangles) region_[static_cast<std::size_t>(t)] = first;
+            regions[static_cast<std::size_t>(first)] = std::move(whole);
+        }
     }
 
     /// For each region, the area of its largest neighbour over a smooth edge.
@@ -99,13 +124,63 @@ private:
     /// Turned over it would be the other side of a thin sheet.
     bool in_plane(int triangle, const Vector3d& origin, const Vector3d& normal) const {
         for (int i = 0; i < 3; ++i)
-            if (std::abs(normal.dot(mesh_.corner(triangle, i) - origin)) > flatness_) return false;
+            if (std::abs(normal.dot(mesh_.corner(triangle, i) - origin)) > flatness_.exact) return false;
         return normal.dot(mesh_.area_vector(triangle)) >= 0;
+    }
+
+    std::vector<Group> smooth_groups(const std::vector<FlatRegion>& regions) const {
+        std::vector<std::vector<int>> adjoining(regions.size());
+        for (const MeshEdge& edge : edges_) {
+            if (edge.sharp) continue;
+            const int a = region_[static_cast<std::size_t>(edge.triangles[0])];
+            const int b = region_[static_cast<std::size_t>(edge.triangles[1])];
+            if (a == b) continue;
+            adjoining[static_cast<std::size_t>(a)].push_back(b);
+            adjoining[static_cast<std::size_t>(b)].push_back(a);
+        }
+        std::vector<Group> groups;
+        std::vector<char> seen(regions.size(), 0);
+        for (std::size_t start = 0; start < regions.size(); ++start) {
+            if (std::exchange(seen[start], 1) != 0) continue;
+            Group group{{static_cast<int>(start)}};
+            for (std::size_t k = 0; k < group.regions.size(); ++k)
+                for (const int next : adjoining[static_cast<std::size_t>(group.regions[k])])
+                    if (std::exchange(seen[static_cast<std::size_t>(next)], 1) == 0)
+                        group.regions.push_back(next);
+            groups.push_back(std::move(group));
+        }
+        for (Group& group : groups) measure(regions, group);
+        return groups;
+    }
+
+    void measure(const std::vector<FlatRegion>& regions, Group& group) const {
+        for (const int i : group.regions) {
+            const FlatRegion& region = regions[static_cast<std::size_t>(i)];
+            group.area += region.area;
+            group.centroid += region.area * region.centroid;
+            for (const int t : region.triangles) group.area_vector += mesh_.area_vector(t);
+        }
+        if (group.area > 0) group.centroid /= group.area;
+    }
+
+    /// All of it near the plane through its middle, and nowhere turned from that by the sharp angle: the
+    /// narrow round of an edge is near a plane too.
+    bool is_nearly_flat(const Group& group, const std::vector<FlatRegion>& regions) const {
+        const Vector3d normal = group.area_vector.normalized();
+        for (const int i : group.regions)
+            for (const int t : regions[static_cast<std::size_t>(i)].triangles) {
+                const Vector3d across = mesh_.area_vector(t);
+                if (normal.dot(across) < flatness_.least_cosine * across.norm()) return false;
+                for (int k = 0; k < 3; ++k)
+                    if (std::abs(normal.dot(mesh_.corner(t, k) - group.centroid)) > flatness_.approximate)
+                        return false;
+            }
+        return true;
     }
 
     const TriangleMesh& mesh_;
     const std::vector<MeshEdge>& edges_;
-    double flatness_;
+    Flatness flatness_;
     std::vector<int> region_;  ///< of each triangle
     std::vector<std::vector<int>> neighbours_;
 };
@@ -113,9 +188,10 @@ private:
 }  // namespace
 
 std::vector<FlatRegion> find_flat_regions(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges,
-                                          double flatness) {
+                                          const Flatness& flatness) {
     RegionGrower grower(mesh, edges, flatness);
-    const std::vector<FlatRegion> all = grower.grow_all();
+    std::vector<FlatRegion> all = grower.grow_all();
+    grower.merge_nearly_flat(all);
     const std::vector<double> neighbours = grower.smooth_neighbours(all);
     double whole = 0;
     for (const FlatRegion& region : all) whole += region.area;

@@ -13,8 +13,15 @@ struct FlatRegion {
     std::vector<int> triangles;
 };
 
-/// In the order of their first triangles. `flatness`: the largest distance to the plane.
+/// What counts as flat.
+struct Flatness {
+    double exact;         ///< the largest distance of a triangle from the plane of its neighbours
+    double approximate;   ///< the same for all that lies between sharp edges, taken as a whole
+    double least_cosine;  ///< of the angle between a triangle of such a whole and its plane
+};
+
+/// In the order of their first triangles.
 std::vector<FlatRegion> find_flat_regions(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges,
-                                          double flatness);
+                                          const Flatness& flatness);
 
 }  // namespace insym

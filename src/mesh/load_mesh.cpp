@@ -15,6 +15,7 @@
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
 
+#include "mesh/binary_off.hpp"
 #include "mesh/triangle_mesh.hpp"
 #include "mesh/triangulate.hpp"
 
@@ -135,6 +136,7 @@ TriangleMesh load_mesh(const std::string& path) {
     const std::string bytes = read_bytes(path);
     if (ending == ".stl") check_stl(path, bytes);
     if (ending == ".ply") check_ply(path, bytes);
+    if (ending == ".off" && is_binary_off(bytes)) return read_binary_off(path, bytes);
     Assimp::Importer importer;
     // From memory: the library must not follow names in the file to others, such as an OBJ's materials.
     const aiScene* scene =

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <numbers>
 #include <string_view>
 
 #include "mesh/feature_lines.hpp"
@@ -15,6 +17,9 @@ namespace insym {
 namespace {
 
 constexpr double kWeldShare = 1e-6, kFlatShare = 1e-5;  ///< of the diagonal
+
+/// Of a face whose corners are off by 0.1 % of the diagonal the triangles are off by twice that.
+constexpr double kNearlyFlatShare = 2e-3;
 
 std::string format_of(const std::string& path) {
     std::string ending = std::filesystem::path(path).extension().string();
@@ -74,7 +79,9 @@ Features find_features(const TriangleMesh& mesh, double diagonal, const ReadMesh
     const std::vector<MeshEdge> edges = find_edges(mesh, options.sharp_angle_deg);
     Features features;
     features.lines = find_feature_lines(mesh, edges, options.sharp_angle_deg);
-    if (options.model.faces) features.regions = find_flat_regions(mesh, edges, kFlatShare * diagonal);
+    const Flatness flatness = {kFlatShare * diagonal, kNearlyFlatShare * diagonal,
+                               std::cos(options.sharp_angle_deg * std::numbers::pi / 180)};
+    if (options.model.faces) features.regions = find_flat_regions(mesh, edges, flatness);
     return features;
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
@@ -31,6 +32,7 @@
 #include <STEPControl_Reader.hxx>
 #include <ShapeUpgrade_ShapeDivideAngle.hxx>
 #include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
@@ -265,6 +267,59 @@ TEST_P(Model, CuttingCirclesIntoArcsChangesNothing) {
     const Input cut = read(divide.Result());
     EXPECT_EQ(difference(original.points, gp_Trsf(), cut.points, 1e-6 * diameter(original.points.positions)),
               "");
+}
+
+/// The largest distance by which the model's own curves miss the vertices that they end at.
+double largest_gap(const TopoDS_Shape& shape) {
+    double largest = 0;
+    for (TopExp_Explorer vertex(shape, TopAbs_VERTEX); vertex.More(); vertex.Next())
+        largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Vertex(vertex.Current())));
+    return largest;
+}
+
+// Oracle: the same model in STEP. In IGES each face stands alone, with edges of its own and no vertices: a
+// vertex is where the curves end, so only faces are left to compare, to that distance, where these miss it.
+TEST_P(Model, FacesOfIgesAreSewn) {
+    if (too_slow()) GTEST_SKIP() << "too slow with a sanitizer";
+    if (std::filesystem::file_size(GetParam()) > 1'000'000) GTEST_SKIP() << "takes 10 s";
+    const TopoDS_Shape shape = plain_read(GetParam().string());
+    const ScratchFolder folder;
+    IGESControl_Writer writer("MM", 0);  // 0: trimmed surfaces
+    writer.AddShape(shape);
+    ASSERT_TRUE(writer.Write(folder.path("faces.igs").c_str()));
+    const double size = diameter(read_model_file(GetParam().string()).points.positions);
+    const double gap = largest_gap(shape);
+    const bool has_gaps = gap > 1e-6 * size;
+    if (GetParam().parent_path().filename() == "examples") {
+        EXPECT_FALSE(has_gaps);
+    }
+    const ReadModelOptions options = {!has_gaps, !has_gaps, true, {}};
+    const Input step = read_model_file(GetParam().string(), options);
+    const Input iges = read_model_file(folder.path("faces.igs"), options);
+    EXPECT_EQ(difference(step.points, gp_Trsf(), iges.points, std::max(gap, 1e-6 * size)), "");
+    if (!has_gaps) {
+        EXPECT_EQ(read_model_file(folder.path("faces.igs"), test::kVertices).points.size(),
+                  read_model_file(GetParam().string(), test::kVertices).points.size());
+    }
+}
+
+// Oracle: geometry. What a line or a circle makes about an axis or along a line is named as what it is, and
+// inside and outside are told apart, also where the parameters run the other way.
+TEST(Entities, SweptSurfaces) {
+    const TopoDS_Shape ring = BRepPrimAPI_MakeTorus(9, 2).Shape();
+    const TopoDS_Shape part =
+        BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(gp_Pnt(-20, -20, -5), 40, 40, 9).Shape(),
+                        BRepAlgoAPI_Fuse(ring, BRepPrimAPI_MakeSphere(3).Shape()).Shape())
+            .Shape();
+    const ScratchFolder folder;
+    IGESControl_Writer writer("MM", 0);
+    writer.AddShape(BRepBuilderAPI_Transform(part, moved_and_turned(), true).Shape());
+    ASSERT_TRUE(writer.Write(folder.path("part.igs").c_str()));
+    const Input step = read(part);
+    EXPECT_EQ(find(step.points, EntityKind::face, "sphere", EntityRole::hollow).size(), 1U);
+    EXPECT_EQ(
+        difference(step.points, moved_and_turned(), read_model_file(folder.path("part.igs")).points, 1e-4),
+        "");
 }
 
 // Oracle: Open CASCADE's own reader and maps. Every face is in one entity, every edge but seams and such.

@@ -9,6 +9,7 @@ import argparse
 import random
 import re
 import resource
+import struct
 import subprocess
 import sys
 import tempfile
@@ -50,10 +51,14 @@ def broken_references(data, rng):
 
 
 def stl_of(rng):
-    """A box as a mesh: ASCII STL, or OFF."""
+    """A box as a mesh: STL as text, or OFF as text or binary."""
     corners = [(x, y, z) for x in (0, 20) for y in (0, 30) for z in (0, 10)]
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    if rng.random() < 0.5:
+    kind = rng.choice(("off", "binary off", "stl", "stl"))
+    if kind == "binary off":
+        numbers = struct.pack(">3i24f", 8, 6, 12, *(x for p in corners for x in p))
+        return "a.off", b"OFF BINARY\n" + numbers + b"".join(struct.pack(">6i", 4, *q, 0) for q in quads)
+    if kind == "off":
         lines = ["OFF", "8 6 12"] + ["%g. %g. %g." % p for p in corners] + ["4 %d %d %d %d" % q for q in quads]
         return "a.off", "\n".join(lines).encode() + b"\n"
     triangles = [t for q in quads for t in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))]

@@ -64,12 +64,9 @@ TEST_P(MeshOfExample, HasTheFirstSymmetriesOfTheModel) {
     ASSERT_TRUE(StlAPI_Writer().Write(shape, folder.path("mesh.stl").c_str()));
     const DetectResult mesh = detect(read_mesh_file(folder.path("mesh.stl")).points);
 
-    // The approximate bracket: 0.2 % of noise leave the order of what comes after the mirror of the whole to
-    // chance.
-    const bool approximate = GetParam() == "bracket_approximate";
     ASSERT_GE(mesh.symmetries.size(), 3U);
     for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t end = with_ties(model.symmetries, approximate ? (i == 0 ? 1 : 10) : 3);
+        const std::size_t end = with_ties(model.symmetries, 3);
         const Symmetry& s = mesh.symmetries[i];
         const bool found =
             std::any_of(model.symmetries.begin(), model.symmetries.begin() + static_cast<std::ptrdiff_t>(end),

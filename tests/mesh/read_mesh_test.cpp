@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <sstream>
@@ -131,6 +132,38 @@ std::string to_off(const Mesh& mesh) {
     return out;
 }
 
+/// As Geomview has it: big-endian, after each face the number of its colours and the colours.
+template <class Number>
+void put_big(std::string& out, Number number) {
+    std::string bytes;
+    put(bytes, number);
+    out.append(bytes.rbegin(), bytes.rend());
+}
+
+/// `keyword`: with C, N and ST a vertex has a colour, a normal and a place in a texture, with 4 a weight.
+std::string to_binary_off(const Mesh& mesh, const std::string& keyword = "OFF", int colours = 0) {
+    const auto has = [&](char prefix) {
+        return keyword.substr(0, keyword.find("OFF")).find(prefix) != std::string::npos;
+    };
+    std::string out = "# a comment\n" + keyword + " BINARY\n";
+    for (const std::size_t n : {mesh.vertices.size(), mesh.triangles.size(), std::size_t{0}})
+        put_big(out, std::int32_t(n));
+    for (const Point& p : mesh.vertices) {
+        const float weight = has('4') ? 2 : 1;
+        for (const double x : p) put_big(out, float(x) * weight);
+        if (has('4')) put_big(out, weight);
+        for (int i = (has('N') ? 3 : 0) + (has('C') ? 4 : 0) + (has('S') ? 2 : 0); i > 0; --i)
+            put_big(out, 0.25F);
+    }
+    for (const auto& t : mesh.triangles) {
+        put_big(out, std::int32_t{3});
+        for (const int i : t) put_big(out, std::int32_t{i});
+        put_big(out, std::int32_t{colours});
+        for (int i = 0; i < colours; ++i) put_big(out, 0.5F);
+    }
+    return out;
+}
+
 std::string to_obj(const Mesh& mesh) {
     std::string out = "mtllib no_such_file.mtl\n";
     for (const Point& p : mesh.vertices) out += "v " + text(p, "\n");
@@ -208,8 +241,9 @@ TEST(ReadMesh, ABoxInAllFormats) {
     const Folder folder;
     const Mesh mesh = box(2, 3, 5);
     const std::vector<std::pair<std::string, std::string>> files = {
-        {"a.stl", to_stl(mesh)}, {"b.STL", to_binary_stl(mesh)}, {"a.off", to_off(mesh)},
-        {"a.obj", to_obj(mesh)}, {"a.ply", to_ply(mesh, false)}, {"b.ply", to_ply(mesh, true)}};
+        {"a.stl", to_stl(mesh)},       {"b.STL", to_binary_stl(mesh)}, {"a.off", to_off(mesh)},
+        {"a.obj", to_obj(mesh)},       {"a.ply", to_ply(mesh, false)}, {"b.ply", to_ply(mesh, true)},
+        {"b.off", to_binary_off(mesh)}};
     for (const auto& [name, content] : files) {
         ASSERT_TRUE(is_mesh_path(name));
         const Input input = read_mesh_file(folder.write(name, content));
@@ -225,6 +259,46 @@ TEST(ReadMesh, ABoxInAllFormats) {
         EXPECT_EQ(std::set<int>(points.labels.begin(), points.labels.end()).size(), 1U + 3 + 3) << name;
         EXPECT_FALSE(input.unit) << name;
     }
+}
+
+// Oracle: the same mesh as text. What else vertices and faces have changes nothing.
+TEST(ReadMesh, BinaryOffIsAsText) {
+    const Folder folder;
+    const Mesh mesh = prism(slot(10, 3, 16), 5);
+    const Input text = read_mesh_file(folder.write("a.off", to_off(mesh)));
+    for (const std::string keyword : {"OFF", "COFF", "NOFF", "STCNOFF", "4OFF", "CN4OFF"})
+        for (const int colours : {0, 1, 3, 4}) {
+            const Input binary = read_mesh_file(folder.write("b.off", to_binary_off(mesh, keyword, colours)));
+            ASSERT_EQ(binary.points.size(), text.points.size()) << keyword << colours;
+            EXPECT_EQ(binary.points.labels, text.points.labels) << keyword << colours;
+            for (std::size_t i = 0; i < text.points.size(); ++i)
+                for (std::size_t k = 0; k < 3; ++k)
+                    EXPECT_NEAR(binary.points.positions[i][k], text.points.positions[i][k], 1e-5);
+        }
+}
+
+// Oracle: geometry. The lid of a prism is flat where its corners are off the plane by 0.1 % of the diagonal,
+// and is not where they are off by 1 %; nor is the narrow round of an edge, however near to a plane it is.
+TEST(ReadMesh, NearlyFlatIsFlat) {
+    const auto with_rough_lid = [](double share) {
+        Mesh mesh = prism(circle(10, 6), 20);
+        const double diagonal = std::hypot(20.0, 20.0, 20.0);
+        for (int i = 0; i < 6; ++i)
+            mesh.vertices[std::size_t(i)][2] += (i % 2 == 0 ? 1 : -1) * share * diagonal;
+        return sorts_of(read(mesh).points).count("face plane");
+    };
+    EXPECT_EQ(with_rough_lid(0), 8U);
+    EXPECT_EQ(with_rough_lid(1e-3), 8U);
+    EXPECT_LT(with_rough_lid(1e-2), 8U);
+
+    std::vector<Point> outline;  // a square of 20 whose corner at (10, 10) is rounded by 0.04
+    for (int i = 0; i <= 8; ++i) {
+        const double angle = std::numbers::pi / 16 * i;
+        outline.push_back({9.96 + 0.04 * std::cos(angle), 9.96 + 0.04 * std::sin(angle), 0});
+    }
+    for (const Point& corner : {Point{-10, 10, 0}, Point{-10, -10, 0}, Point{10, -10, 0}})
+        outline.push_back(corner);
+    EXPECT_EQ(sorts_of(read(prism(outline, 20)).points).count("face plane"), 6U);
 }
 
 TEST(ReadMesh, RimsAreCircles) {
@@ -298,6 +372,28 @@ TEST(ReadMeshErrors, DamagedFiles) {
             "");
     refused("cut_binary.ply", to_ply(mesh, true).substr(0, to_ply(mesh, true).size() - 60),
             ErrorCode::cannot_read, "");
+    const std::string off = to_binary_off(mesh);
+    const std::size_t head = off.find("BINARY\n") + 7, vertices = head + 12, faces = vertices + 96;
+    for (std::size_t size = head; size < off.size(); ++size)
+        refused("cut_binary.off", off.substr(0, size), ErrorCode::cannot_read, "damaged");
+    const auto with = [&](std::size_t at, std::int32_t number) {
+        std::string word, changed = off;
+        put_big(word, number);
+        return changed.replace(at, word.size(), word);
+    };
+    for (const std::int32_t lie : {-1, 9, 1 << 30, std::numeric_limits<std::int32_t>::max()}) {
+        refused("vertices.off", with(head, lie), ErrorCode::cannot_read, "damaged");
+        refused("faces.off", with(head + 4, lie), ErrorCode::cannot_read, "damaged");
+        refused("corners.off", with(faces, lie), ErrorCode::cannot_read, "damaged");
+        refused("index.off", with(faces + 4, lie), ErrorCode::cannot_read, "damaged");
+        refused("colours.off", with(faces + 16, lie), ErrorCode::cannot_read, "damaged");
+    }
+    refused("infinite.off",
+            with(vertices, std::bit_cast<std::int32_t>(std::numeric_limits<float>::infinity())),
+            ErrorCode::cannot_read, "finite");
+    refused("more.off", off + "....", ErrorCode::cannot_read, "goes on");
+    refused("dimensions.off", to_binary_off(mesh, "nOFF"), ErrorCode::cannot_read, "not of a mesh in space");
+    refused("none.off", to_binary_off({}), ErrorCode::invalid_input, "no triangles");
     refused("empty.ply", "", ErrorCode::cannot_read, "empty");
     refused("letter.stl", "Dear Sir", ErrorCode::cannot_read, "not an STL file");
     refused("none.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", ErrorCode::invalid_input, "no triangles");
