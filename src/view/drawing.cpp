@@ -179,21 +179,24 @@ private:
         }
     };
 
+    /// Slots are placed by fits, the deviation of which adds to a thousandth of the model.
+    bool is_slot(const Point& p, const Point& slot) const {
+        return (to_vector(p) - to_vector(slot)).norm() <
+               1e-3 * drawing_.radius + 4 * symmetry_->deviation.max;
+    }
+
     /// Takes the slots that a face or an edge would fill out of `slots`.
     std::vector<Ghost> take_ghosts(std::vector<Point>& slots) const {
         std::vector<Ghost> ghosts;
         if (result_.points.entities.empty() || model_.triangles.empty()) return ghosts;
-        // Slots are placed by fits, the deviation of which adds to a thousandth of the model.
-        const double near = 1e-3 * drawing_.radius + 4 * symmetry_->deviation.max;
         for (const Orbit& cycle : symmetry_->cycles) {
             const int last = cycle.points.back();
             const auto entity = static_cast<std::size_t>(last);
             if (cycle.closed || result_.points.entities[entity].kind == EntityKind::vertex) continue;
             for (Ghost ghost{last, 1};; ++ghost.steps) {
                 const Point p = ghost.carry(symmetry_->isometry, result_.points.positions[entity]);
-                const auto slot = std::find_if(slots.begin(), slots.end(), [&](const Point& q) {
-                    return (to_vector(p) - to_vector(q)).norm() < near;
-                });
+                const auto slot =
+                    std::find_if(slots.begin(), slots.end(), [&](const Point& q) { return is_slot(p, q); });
                 if (slot == slots.end()) break;
                 slots.erase(slot);
                 ghosts.push_back(ghost);
@@ -202,7 +205,9 @@ private:
         return ghosts;
     }
 
-    void draw_ghosts(const std::vector<Ghost>& ghosts) {
+    /// Returns the corners of what is drawn.
+    std::vector<Point> draw_ghosts(const std::vector<Ghost>& ghosts) {
+        std::vector<Point> corners_of_edges;
         Tessellation surface;
         ShadedMesh edges;
         for (const Ghost& ghost : ghosts) {
@@ -224,19 +229,24 @@ private:
                 }
                 surface.triangles.push_back(corners);
             }
-            for (const Tessellation::Line& line : model_.lines)
-                if (is_its(EntityKind::edge, line.edge))
-                    for (std::size_t i = 1; i < line.vertices.size(); ++i)
-                        add_tube(place(carried(line.vertices[i - 1])), place(carried(line.vertices[i])),
-                                 size(2 * kLine), edges);
+            for (const Tessellation::Line& line : model_.lines) {
+                if (!is_its(EntityKind::edge, line.edge)) continue;
+                corners_of_edges.push_back(carried(line.vertices.front()));
+                corners_of_edges.push_back(carried(line.vertices.back()));
+                for (std::size_t i = 1; i < line.vertices.size(); ++i)
+                    add_tube(place(carried(line.vertices[i - 1])), place(carried(line.vertices[i])),
+                             size(2 * kLine), edges);
+            }
         }
         add("empty slots, faces", PartKind::ghost, kElement, shade(surface, drawing_.origin));
         add("empty slots, edges", PartKind::overlay, kElement, std::move(edges));
+        return corners_of_edges;
     }
 
     void draw_marks() {
         std::vector<Point> slots = symmetry_->missing;
-        draw_ghosts(take_ghosts(slots));
+        for (const Point& corner : draw_ghosts(take_ghosts(slots)))
+            std::erase_if(slots, [&](const Point& slot) { return is_slot(corner, slot); });
         ShadedMesh fixed, missing;
         const Vector3f towards(kEye.data());  // so that rings look like rings
         for (const int i : symmetry_->fixed_points)
