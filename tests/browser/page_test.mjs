@@ -242,15 +242,21 @@ async function chart(page) {
   await close(tab);
 }
 
-/// The flange lacks one of eight holes (examples/README.md): its faces and edges are drawn where they would be.
+/// The flange lacks one of eight holes (examples/README.md): its faces and edges are drawn where they would be. The
+/// plate lacks a slot of 4 faces, 12 edges and 8 vertices; the vertices are corners of the edges.
 async function ghosts() {
-  const tab = await open(makePage(join(sources, "examples/flange.step"), "--types", "C"));
-  const slots = await tab.evaluate(() => {
-    const first = window.insym.report.symmetries[0];
-    return {order: first.order, missing: first.missing.length, ...window.insym.stage.emptySlots()};
-  });
-  assert.deepEqual(slots, {order: 8, missing: 7, ghosts: 7, rings: 0});
-  await close(tab);
+  for (const [example, type, expected] of [
+    ["flange", "C", {order: 8, missing: 7, ghosts: 7, rings: 0}],
+    ["slotted_plate", "T", {order: null, missing: 24, ghosts: 16, rings: 0}],
+  ]) {
+    const tab = await open(makePage(join(sources, `examples/${example}.step`), "--types", type));
+    const slots = await tab.evaluate(() => {
+      const first = window.insym.report.symmetries[0];
+      return {order: first.order ?? null, missing: first.missing.length, ...window.insym.stage.emptySlots()};
+    });
+    assert.deepEqual(slots, expected);
+    await close(tab);
+  }
 }
 
 async function phone(page) {

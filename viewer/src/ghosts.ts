@@ -9,9 +9,11 @@ export interface Ghost {
 
 const kNear = 1e-3; // of the model; slots are placed by fits, the deviation of which adds to it
 
-/// `hasShape`: whether the entity of a point can be drawn. `others`: the slots that nothing drawn fills.
+/// `hasShape`: whether the entity of a point can be drawn; `cornersOf`: ends of the edges that are drawn for it.
+/// `others`: the slots that nothing drawn fills, and where no corner of it stands.
 export function ghostsOf(
-  s: Symmetry, frame: Frame, positions: Vector3[], hasShape: (point: number) => boolean): {ghosts: Ghost[]; others: Vector3[]} {
+  s: Symmetry, frame: Frame, positions: Vector3[], hasShape: (point: number) => boolean,
+  cornersOf: (point: number) => Vector3[]): {ghosts: Ghost[]; others: Vector3[]} {
   const step = frame.matrix(s.isometry.matrix);
   const near = kNear + 4 * s.deviation.max * frame.scale;
   const slots = s.missing.map((slot) => frame.point(slot.position));
@@ -30,5 +32,7 @@ export function ghostsOf(
       matrix.premultiply(step);
     }
   }
+  for (const {point, matrix} of ghosts)
+    for (const corner of cornersOf(point)) take(corner.applyMatrix4(matrix));
   return {ghosts, others: slots};
 }

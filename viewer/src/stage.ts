@@ -236,7 +236,19 @@ export class Stage {
   }
 
   private slots(s: Symmetry): {ghosts: Ghost[]; others: Vector3[]} {
-    return ghostsOf(s, this.frame, this.positions, (point) => this.names(point).some((name) => this.shapes.has(name)));
+    return ghostsOf(s, this.frame, this.positions, (point) => this.names(point).some((name) => this.shapes.has(name)),
+      (point) => this.cornersOf(point));
+  }
+
+  /// Both ends of the edges of a point's entity.
+  private cornersOf(point: number): Vector3[] {
+    const names = new Set(this.names(point));
+    const {line_edges, line_starts} = this.model;
+    const corners: Vector3[] = [];
+    line_edges.forEach((id, line) => {
+      if (names.has(`edge ${id}`)) corners.push(this.linePoint(line_starts[line]), this.linePoint(this.lineEnd(line) - 1));
+    });
+    return corners;
   }
 
   private drawOverlay(): void {
