@@ -25,7 +25,7 @@ const kLarge = ["slotted_plate.step", "staggered_connector.step", "Ventilator.st
 
 function makePage(input, ...options) {
   const page = join(folder, `${basename(input)}${options.join("")}.html`);
-  const points = kLarge.includes(basename(input)) ? ["--points", "faces"] : [];
+  const points = kLarge.includes(basename(input)) && !options.includes("--points") ? ["--points", "faces"] : [];
   execFileSync(program, ["detect", input, "--max-tolerance", "1e-6", "--quiet", "--html", page, ...points, ...options]);
   return page;
 }
@@ -249,7 +249,7 @@ async function ghosts() {
     ["flange", "C", {order: 8, missing: 7, ghosts: 7, rings: 0}],
     ["slotted_plate", "T", {order: null, missing: 24, ghosts: 16, rings: 0}],
   ]) {
-    const tab = await open(makePage(join(sources, `examples/${example}.step`), "--types", type));
+    const tab = await open(makePage(join(sources, `examples/${example}.step`), "--points", "representative", "--types", type));
     const slots = await tab.evaluate(() => {
       const first = window.insym.report.symmetries[0];
       return {order: first.order ?? null, missing: first.missing.length, ...window.insym.stage.emptySlots()};
