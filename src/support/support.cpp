@@ -300,8 +300,10 @@ RigidMap Gatherer::refit(SymmetryType type, const std::vector<std::pair<int, int
         return fit_of_type(type, links, cloud_.dimension());
     // Near enough while searching; the exact fit of a turn without a step comes at the end.
     RigidMap map = fit_of_type(SymmetryType::screw, links, cloud_.dimension());
-    const Vector3d axis = motion_of(map, false).axis;
-    map.shift -= axis * axis.dot(map.shift);
+    const Motion motion = motion_of(map, false);
+    // The links of a translation, or nearly so, turn round no axis that there could be no step along.
+    constexpr double kTurns = 1e-3;
+    if (motion.angle > kTurns) map.shift -= motion.axis * motion.axis.dot(map.shift);
     return map;
 }
 
