@@ -15,7 +15,10 @@ commands=("${@:2}")
 bare=$machine.tar
 
 unmount() {
-    if mountpoint --quiet "$machine/proc"; then umount "$machine/proc"; fi
+    local folder
+    for folder in proc dev/pts; do
+        if mountpoint --quiet "$machine/$folder"; then umount "$machine/$folder"; fi
+    done
 }
 trap unmount EXIT
 unmount # what a killed run left
@@ -31,7 +34,15 @@ fi
 mkdir -p "$machine"
 tar --extract --file "$bare" --directory "$machine"
 cp /etc/resolv.conf /etc/hosts "$machine/etc/"
+certificates= # those that this machine's way to the npm registry needs
+if [ -n "${NODE_EXTRA_CA_CERTS:-}" ]; then
+    certificates=/etc/npm_certificates.crt
+    cp "$NODE_EXTRA_CA_CERTS" "$machine$certificates"
+fi
 mount -t proc proc "$machine/proc"
+mkdir -p "$machine/dev/pts"
+mount -t devpts -o newinstance,ptmxmode=0666 devpts "$machine/dev/pts" # terminals, as on any machine
+ln --symbolic --force pts/ptmx "$machine/dev/ptmx"
 
 # The working tree as git sees it, new files included, and the shared data beside it, if any.
 home=$machine/root/insym
@@ -45,7 +56,7 @@ if [ -d "$source_dir/../shared" ]; then cp -r "$source_dir/../shared" "$home/"; 
 for command in "${commands[@]}"; do
     echo "== $command"
     start=$SECONDS
-    env --ignore-environment HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin \
+    env --ignore-environment HOME=/root NODE_EXTRA_CA_CERTS="$certificates" PATH=/usr/sbin:/usr/bin:/sbin:/bin \
         chroot "$machine" bash -c "cd /root/insym/main && $command" </dev/null
     echo "== $command: $((SECONDS - start)) s"
 done

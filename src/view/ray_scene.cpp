@@ -6,6 +6,7 @@
 #include <new>
 
 #include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 namespace insym {
 namespace {
@@ -40,7 +41,9 @@ RayScene::RayScene(const std::vector<Part>& parts, const std::vector<PartKind>& 
         parts_.push_back(&part);
     }
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);  // no gaps between neighbours
-    rtcCommitScene(scene_);
+    // By this thread alone: quick enough, and no thread of Embree's touches what another one made.
+    tbb::task_arena alone(1);
+    alone.execute([this] { rtcCommitScene(scene_); });
 }
 
 RayScene::~RayScene() {
