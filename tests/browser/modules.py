@@ -3,6 +3,7 @@
 
 FOLDER/node_modules is made by `npm ci` from the lock file of VIEWER, once for each state of that file.
 """
+import json
 import shutil
 import subprocess
 import sys
@@ -20,8 +21,11 @@ def main():
     if not shutil.which("npm"):
         print("skipped: there is no npm here")
         return SKIPPED
-    for name in ("package.json", "package-lock.json"):
-        shutil.copy(viewer / name, folder / name)
+    # Without the alias among the overrides, on which the npm of Debian 12 (9.2) fails; the lock file has it too.
+    package = json.loads((viewer / "package.json").read_text())
+    package.pop("overrides", None)
+    (folder / "package.json").write_text(json.dumps(package))
+    shutil.copy(lock, folder / lock.name)
     # No scripts of packages: nothing here needs one.
     command = ["npm", "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--prefer-offline"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
