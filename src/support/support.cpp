@@ -301,7 +301,8 @@ RigidMap Gatherer::refit(SymmetryType type, const std::vector<std::pair<int, int
     // Near enough while searching; the exact fit of a turn without a step comes at the end.
     RigidMap map = fit_of_type(SymmetryType::screw, links, cloud_.dimension());
     const Motion motion = motion_of(map, false);
-    // The links of a translation, or nearly so, turn round no axis that there could be no step along.
+    // The links of a translation turn round no axis that there could be no step along; nor do those of a turn
+    // far below any of whole order that is looked for.
     constexpr double kTurns = 1e-3;
     if (motion.angle > kTurns) map.shift -= motion.axis * motion.axis.dot(map.shift);
     return map;

@@ -205,9 +205,9 @@ private:
         return ghosts;
     }
 
-    /// Returns the corners of what is drawn.
+    /// Returns the ends of the edges that are drawn.
     std::vector<Point> draw_ghosts(const std::vector<Ghost>& ghosts) {
-        std::vector<Point> corners_of_edges;
+        std::vector<Point> ends;
         Tessellation surface;
         ShadedMesh edges;
         for (const Ghost& ghost : ghosts) {
@@ -231,8 +231,8 @@ private:
             }
             for (const Tessellation::Line& line : model_.lines) {
                 if (!is_its(EntityKind::edge, line.edge)) continue;
-                corners_of_edges.push_back(carried(line.vertices.front()));
-                corners_of_edges.push_back(carried(line.vertices.back()));
+                ends.push_back(carried(line.vertices.front()));
+                ends.push_back(carried(line.vertices.back()));
                 for (std::size_t i = 1; i < line.vertices.size(); ++i)
                     add_tube(place(carried(line.vertices[i - 1])), place(carried(line.vertices[i])),
                              size(2 * kLine), edges);
@@ -240,7 +240,7 @@ private:
         }
         add("empty slots, faces", PartKind::ghost, kElement, shade(surface, drawing_.origin));
         add("empty slots, edges", PartKind::overlay, kElement, std::move(edges));
-        return corners_of_edges;
+        return ends;
     }
 
     void draw_marks() {

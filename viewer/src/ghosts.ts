@@ -32,7 +32,7 @@ export function ghostsOf(
       matrix.premultiply(step);
     }
   }
-  for (const {point, matrix} of ghosts)
+  for (const {point, matrix} of slots.length > 0 ? ghosts : [])
     for (const corner of cornersOf(point)) take(corner.applyMatrix4(matrix));
   return {ghosts, others: slots};
 }

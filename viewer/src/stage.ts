@@ -30,6 +30,7 @@ export class Stage {
   private readonly lines: BufferGeometry;
   private readonly pointOf = new Map<string, number>(); // "face 12" -> point
   private readonly shapes = new Set<string>(); // "face 12", "edge 3": what the model has
+  private readonly linesOf = new Map<string, number[]>(); // "edge 3" -> lines
   private readonly base = new Group(); // model and points
   private readonly overlay = new Group(); // the chosen symmetry
   private readonly mover = new Group(); // what moves
@@ -51,7 +52,11 @@ export class Stage {
       for (const name of this.names(i)) this.pointOf.set(name, i);
     });
     for (const id of model.faces) this.shapes.add(`face ${id}`);
-    for (const id of model.line_edges) this.shapes.add(`edge ${id}`);
+    model.line_edges.forEach((id, line) => {
+      const name = `edge ${id}`;
+      this.shapes.add(name);
+      this.linesOf.set(name, [...(this.linesOf.get(name) ?? []), line]);
+    });
     this.renderer = new WebGLRenderer({canvas, antialias: report.points.length < kManyPoints});
     this.renderer.localClippingEnabled = true;
     if (!this.flat) this.camera.up.set(0, 0, 1); // before the controls, which take it once
@@ -242,13 +247,8 @@ export class Stage {
 
   /// Both ends of the edges of a point's entity.
   private cornersOf(point: number): Vector3[] {
-    const names = new Set(this.names(point));
-    const {line_edges, line_starts} = this.model;
-    const corners: Vector3[] = [];
-    line_edges.forEach((id, line) => {
-      if (names.has(`edge ${id}`)) corners.push(this.linePoint(line_starts[line]), this.linePoint(this.lineEnd(line) - 1));
-    });
-    return corners;
+    return this.names(point).flatMap((name) => this.linesOf.get(name) ?? []).flatMap((line) =>
+      [this.linePoint(this.model.line_starts[line]), this.linePoint(this.lineEnd(line) - 1)]);
   }
 
   private drawOverlay(): void {
