@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "isometry/fit.hpp"
+#include "ranking/significance.hpp"
 
 namespace insym {
 namespace {
@@ -175,11 +176,15 @@ public:
             name(group);
             return group;
         }
-        // With slots for the full group, or with those alone that need none where they are as many.
+        // With slots for the full group, or with those alone that need none where they are as many, or that
+        // are met so much better that the full group is nearly one, and its slots are none.
+        constexpr double kNoisier = 2;
         grow(true);
         const std::size_t complete = elements_.size();
+        const double noise = noise_.squared();
         grow(false);
-        if (slots_too_many() || elements_.size() <= complete || !holds()) grow(true);
+        const bool looser = complete > 1 && noise_.squared() > kNoisier * noise;
+        if (slots_too_many() || elements_.size() <= complete || looser || !holds()) grow(true);
         if (slots_too_many() || elements_.empty()) return group;
         name(group);
         group.empty_slots = static_cast<int>(slots_.size());
@@ -188,6 +193,20 @@ public:
     }
 
 private:
+    /// How far links are off, beyond what the fit of each isometry takes up.
+    struct Noise {
+        double sum = 0, free = 0, floor = 0;
+
+        void add(const Symmetry& s, const Cloud& cloud) {
+            int links = 0;
+            for (const Orbit& o : s.cycles)
+                links += static_cast<int>(o.points.size()) - (o.closed && !is_pair_type(s.type) ? 0 : 1);
+            sum += links * s.deviation.rms * s.deviation.rms;
+            free += std::max(0, cloud.dimension() * links - degrees_of_freedom(s.type, cloud.dimension()));
+        }
+        double squared() const { return sum / std::max(free, 1.0) + floor * floor; }
+    };
+
     struct Candidate {
         std::size_t id;
         RigidMap map;
@@ -234,7 +253,7 @@ private:
     }
 
     /// What holds much more loosely than the others is no element of their group: a box that is nearly a
-    /// cube.
+    /// cube. One alone may hold so well by chance.
     void drop_looser() {
         constexpr double kJump = 8;
         std::vector<double> slacks;
@@ -242,7 +261,7 @@ private:
         for (const Candidate& c : candidates_) slacks.push_back(c.slack);
         std::sort(slacks.begin(), slacks.end());
         for (std::size_t k = 1; k < slacks.size(); ++k)
-            if (slacks[k] > kJump * slacks[k - 1]) {
+            if (slacks[k] > (k == 1 ? kJump : 1) * kJump * slacks[k - 1]) {
                 std::erase_if(candidates_, [&](const Candidate& c) { return c.slack >= slacks[k]; });
                 return;
             }
@@ -260,6 +279,7 @@ private:
         members_.clear();
         slots_.clear();
         tolerance_ = 2 * cloud_.scene().resolution;
+        noise_ = {0, 0, cloud_.scene().resolution};
         for (const Candidate& c : candidates_) {
             if (complete && !c.holes.empty()) continue;
             const double tolerance = std::max(tolerance_, c.slack);
@@ -274,6 +294,7 @@ private:
             if (slots.size() > most_slots()) continue;
             slots_ = std::move(slots);
             tolerance_ = tolerance;
+            noise_.add(symmetries_[c.id], cloud_);
             members_.push_back(c.id);
             add_element(c.map.linear);
             add_element(c.map.linear.transpose());
@@ -368,6 +389,7 @@ private:
     Vector3d extent_;
     Matrix3d axes_;
     double tolerance_ = 0;
+    Noise noise_;  // of the members
     std::vector<Candidate> candidates_;
     std::vector<Matrix3d> elements_;
     std::vector<std::size_t> members_;

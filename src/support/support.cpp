@@ -172,9 +172,15 @@ int Gatherer::carried(const Support& support, double reach) const {
     for (const auto& [from, to] : support.links)
         in[static_cast<std::size_t>(from)] = in[static_cast<std::size_t>(to)] = 1;
     int count = 0;
-    for (int i = 0; i < cloud_.size(); ++i)
-        if (in[static_cast<std::size_t>(i)] != 0 || (support.map(cloud_[i]) - cloud_[i]).norm() <= reach)
+    // Two points on the axis that a rotation-reflection swaps are no link of it, but carried.
+    const bool swaps = support.type == SymmetryType::rotation_reflection;
+    for (int i = 0; i < cloud_.size(); ++i) {
+        const Vector3d image = support.map(cloud_[i]);
+        double ignored = 0;
+        if (in[static_cast<std::size_t>(i)] != 0 || (image - cloud_[i]).norm() <= reach ||
+            (swaps && cloud_.nearest(image, cloud_.label(i), reach, ignored) >= 0))
             ++count;
+    }
     return count;
 }
 
@@ -377,7 +383,9 @@ std::optional<Support> Gatherer::settle(SymmetryType type, RigidMap map, double 
         link(type, map, reach, region, linked);
         const Judged judged = judge(type, linked, reach);
         std::vector<std::pair<int, int>> links = links_within(linked, judged.wide);
-        if (judged.significance < best.significance) {
+        // One pair says as much however wide it was met.
+        if (judged.significance < best.significance ||
+            (judged.significance == best.significance && judged.wide < best.tolerance)) {
             best.type = type;
             best.map = map;
             best.tolerance = judged.wide;

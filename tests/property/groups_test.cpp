@@ -240,10 +240,10 @@ TEST(Groups, NamesMolecules) {
     }
 }
 
-// Noise of 1 % of the shortest distance leaves some open in one draw or another: a mirror that swaps one pair
-// is missed, or one more fluorine would make an octahedron of bromine pentafluoride. All draws count.
+// Noise of 1 % of the shortest distance leaves some open in one draw or another: one more fluorine would make
+// an octahedron of bromine pentafluoride. All draws count.
 TEST(Groups, NamesMoleculesUnderNoise) {
-    constexpr int kDraws = 7, kMostWrong = 4;
+    constexpr int kDraws = 20, kMostWrong = 4;
     int wrong = 0;
     for (const Shape& shape : molecules()) {
         int right = 0;
@@ -254,27 +254,38 @@ TEST(Groups, NamesMoleculesUnderNoise) {
             right += result.group->schoenflies == shape.group ? 1 : 0;
             named += result.group->schoenflies + " ";
         }
-        EXPECT_GE(right, kDraws - 2) << shape.name << " is " << shape.group << ", named " << named;
+        EXPECT_GE(right, kDraws - 3) << shape.name << " is " << shape.group << ", named " << named;
         wrong += kDraws - right;
     }
     EXPECT_LE(wrong, kMostWrong);
 }
 
 TEST(Groups, OnePointLess) {
-    for (Shape shape : solids()) {
-        if (shape.points.size() > kMostPoints) continue;
-        if (shape.points.size() < 6) continue;  // what is left of a tetrahedron is a triangle
-        const Point lost = shape.points.back();
-        shape.points.pop_back();
-        const DetectResult result = found_in(shape, 0);
-        ASSERT_TRUE(result.group);
-        EXPECT_EQ(result.group->schoenflies, shape.group) << shape.name;
-        EXPECT_EQ(result.group->empty_slots, 1) << shape.name;
-        const auto& missing = result.symmetries.at(0).missing;
-        EXPECT_TRUE(std::any_of(missing.begin(), missing.end(), [&](const Point& p) {
-            return std::hypot(p[0] - lost[0], p[1] - lost[1], p[2] - lost[2]) < 1e-6;
-        })) << shape.name;
-    }
+    for (const Shape& full : solids())
+        for (const double noise : {0.0, 0.01}) {
+            if (full.points.size() > kMostPoints) continue;
+            if (full.points.size() < 6) continue;  // what is left of a tetrahedron is a triangle
+            Shape shape = full;
+            const Point lost = shape.points.back();
+            shape.points.pop_back();
+            const DetectResult result = found_in(shape, noise);
+            ASSERT_TRUE(result.group);
+            EXPECT_EQ(result.group->schoenflies, shape.group) << shape.name << ", noise " << noise;
+            EXPECT_EQ(result.group->empty_slots, 1) << shape.name << ", noise " << noise;
+            const double near = (10 * noise + 1e-6) * shortest(shape.points);
+            // Under noise a few parts of a set can be met better by chance than the whole: a snub cube's
+            // squares.
+            const auto of_whole =
+                std::find_if(result.symmetries.begin(), result.symmetries.end(),
+                             [&](const Symmetry& s) { return noise == 0 || s.coverage > 0.5; });
+            ASSERT_NE(of_whole, result.symmetries.end()) << shape.name;
+            EXPECT_TRUE(std::any_of(of_whole->missing.begin(), of_whole->missing.end(),
+                                    [&](const Point& p) {
+                                        return std::hypot(p[0] - lost[0], p[1] - lost[1], p[2] - lost[2]) <
+                                               near;
+                                    }))
+                << shape.name << ", noise " << noise;
+        }
 }
 
 }  // namespace
