@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "hypotheses/generators.hpp"
-#include "points/distances.hpp"
 
 namespace insym {
 
@@ -110,13 +109,13 @@ bool ring_map(const Vector3d& a, const Vector3d& b, const Vector3d& c, RigidMap&
 
 class ChainSearch {
 public:
-    ChainSearch(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most)
-        : cloud_(cloud), group_(group), distances_(positions(cloud, group)), reach_(reach), best_(most) {
-        const auto n = static_cast<double>(group.size());
-        three_ = affordable(1.5 * n * n * n / cloud.scene().diameter, 6e4, 1, reach);
-        four_ = affordable(27 * n * n * n * n / std::pow(cloud.scene().diameter, 3), 1e4, 3, reach);
-        three_ = std::max(three_, 2 * cloud.scene().resolution);
-        four_ = std::max(four_, 2 * cloud.scene().resolution);
+    ChainSearch(const GroupDistances& group, double reach, double effort, std::size_t most)
+        : cloud_(group.cloud), group_(group.group), distances_(group.distances), reach_(reach), best_(most) {
+        const double n = distances_.size(), diameter = cloud_.scene().diameter;
+        three_ = affordable(1.5 * n * n * n / diameter, 6e4 * effort, 1, reach);
+        four_ = affordable(27 * n * n * n * n / std::pow(diameter, 3), 1e4 * effort, 3, reach);
+        three_ = std::max(three_, 2 * cloud_.scene().resolution);
+        four_ = std::max(four_, 2 * cloud_.scene().resolution);
     }
 
     std::vector<Candidate> run() {
@@ -209,7 +208,7 @@ private:
 
     const Cloud& cloud_;
     const SearchGroup& group_;
-    const Distances distances_;
+    const Distances& distances_;
     double reach_;
     double three_ = 0;
     double four_ = 0;
@@ -229,11 +228,11 @@ Vector3d half_turn_axis(const Cloud& cloud, const std::array<int, 4>& points) {
 /// Half-turns as pairs of pairs. A's mates are all points; B is one of a sample, nearest first.
 class HalfTurnSearch {
 public:
-    HalfTurnSearch(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most)
-        : cloud_(cloud), group_(group), distances_(positions(cloud, group)), best_(most) {
-        const auto n = static_cast<double>(group.size());
-        slack_ = affordable(9 * n * n * n * n / 8 / std::pow(cloud.scene().diameter, 2), 1e4, 2, reach);
-        slack_ = std::max(slack_, 2 * cloud.scene().resolution);
+    HalfTurnSearch(const GroupDistances& group, double reach, std::size_t most)
+        : cloud_(group.cloud), group_(group.group), distances_(group.distances), best_(most) {
+        const double n = distances_.size();
+        slack_ = affordable(9 * n * n * n * n / 8 / std::pow(cloud_.scene().diameter, 2), 1e4, 2, reach);
+        slack_ = std::max(slack_, 2 * cloud_.scene().resolution);
     }
 
     std::vector<Candidate> run(double looks) {
@@ -277,7 +276,7 @@ private:
 
     const Cloud& cloud_;
     const SearchGroup& group_;
-    const Distances distances_;
+    const Distances& distances_;
     double slack_ = 0;
     BestCandidates best_;
 };
@@ -299,15 +298,17 @@ Hypothesis half_turn_of(const Cloud& cloud, const std::array<int, 4>& points) {
 
 }  // namespace
 
-std::vector<Candidate> chains(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most) {
-    if (group.size() < 3) return {};
-    return ChainSearch(cloud, group, reach, most).run();
+GroupDistances::GroupDistances(const Cloud& of, const SearchGroup& points)
+    : cloud(of), group(points), distances(positions(of, points)) {}
+
+std::vector<Candidate> chains(const GroupDistances& group, double reach, double effort, std::size_t most) {
+    if (group.group.size() < 3) return {};
+    return ChainSearch(group, reach, effort, most).run();
 }
 
-std::vector<Candidate> half_turns(const Cloud& cloud, const SearchGroup& group, double reach, double looks,
-                                  std::size_t most) {
-    if (group.size() < 4 || cloud.dimension() == 2) return {};
-    return HalfTurnSearch(cloud, group, reach, most).run(looks);
+std::vector<Candidate> half_turns(const GroupDistances& group, double reach, double looks, std::size_t most) {
+    if (group.group.size() < 4 || group.cloud.dimension() == 2) return {};
+    return HalfTurnSearch(group, reach, most).run(looks);
 }
 
 double disagreement(const Cloud& cloud, const Candidate& candidate) {

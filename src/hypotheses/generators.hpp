@@ -7,22 +7,23 @@
 
 #include "hypotheses/hypothesis.hpp"
 #include "points/cloud.hpp"
+#include "points/distances.hpp"
 #include "run_monitor.hpp"
 
 namespace insym {
 
-/// Points of one label that are looked at all with all: a whole class, or a part of a large one.
+/// Points that are looked at all with all: those of one label, or a part of many.
 using SearchGroup = std::vector<int>;
 
-/// Every class of equal labels that is small enough. Of a larger one: its points farthest out (mates under a
-/// symmetry of the whole stand there together), overlapping neighbourhoods, and points whose neighbours lie
-/// alike, as those of the copies of one part do. In all about n^1.2 points.
-std::vector<SearchGroup> search_groups(const Cloud& cloud, std::size_t most);
+/// Of `points`, every class of equal labels that is small enough. Of a larger one: its points farthest out
+/// (mates under a symmetry of the whole stand there together), overlapping neighbourhoods, and points whose
+/// neighbours lie alike, as those of the copies of one part do. In all about n^1.2 points.
+std::vector<SearchGroup> search_groups(const Cloud& cloud, const SearchGroup& points, std::size_t most);
 
-/// Pairs of one label, by index: all of them, or those of the points of some with all, spread over the set,
-/// and of neighbours in the order of their distance from the middle.
+/// Pairs of one label among `points`: all of them, or those of the points of some with all, spread over the
+/// set, and of neighbours in the order of their distance from the middle.
 using PointPairs = std::vector<std::pair<int, int>>;
-PointPairs spread_pairs(const Cloud& cloud, std::size_t most);
+PointPairs spread_pairs(const Cloud& cloud, const SearchGroup& points, std::size_t most);
 
 /// All pairs of a group.
 PointPairs pairs_within(const SearchGroup& group);
@@ -32,6 +33,15 @@ PointPairs pairs_within(const SearchGroup& group);
 /// the smallest cells first, and the fullest of each size. Time and memory linear in the pairs.
 std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, const PointPairs& pairs, double reach,
                              std::size_t most);
+
+/// A group with the distances of its points, which go by their place in it.
+struct GroupDistances {
+    const Cloud& cloud;
+    const SearchGroup& group;
+    Distances distances;
+
+    GroupDistances(const Cloud& of, const SearchGroup& points);
+};
 
 /// A chain of points, or two pairs, that may be carried into one another. Small, as there are many.
 struct Candidate {
@@ -43,13 +53,13 @@ struct Candidate {
 
 /// Half-turns from two pairs A, A' and B, B' with |AB| = |A'B'| and |AB'| = |A'B|. The `most` that agree
 /// best, best first. About `looks` pairs of pairs are looked at, and at least four for each pair.
-std::vector<Candidate> half_turns(const Cloud& cloud, const SearchGroup& group, double reach, double looks,
-                                  std::size_t most);
+std::vector<Candidate> half_turns(const GroupDistances& group, double reach, double looks, std::size_t most);
 
 /// Rotations from three points A, B, C with |AB| = |BC|, one of whose neighbours on the ring is there; every
 /// other kind from four with |AB| = |BC| = |CD| and |AC| = |BD|. The `most` that chance explains least, best
-/// first.
-std::vector<Candidate> chains(const Cloud& cloud, const SearchGroup& group, double reach, std::size_t most);
+/// first. Of a large group `reach` is lowered until chance gives about 60,000 `effort` of three and 10,000 of
+/// four.
+std::vector<Candidate> chains(const GroupDistances& group, double reach, double effort, std::size_t most);
 
 struct Agreed {
     std::vector<Candidate> candidates;

@@ -58,9 +58,9 @@ void add_alike(const Cloud& cloud, const SearchGroup& members, std::size_t most,
 
 }  // namespace
 
-std::vector<SearchGroup> search_groups(const Cloud& cloud, std::size_t most) {
+std::vector<SearchGroup> search_groups(const Cloud& cloud, const SearchGroup& points, std::size_t most) {
     std::map<int, SearchGroup> classes;
-    for (int i = 0; i < cloud.size(); ++i) classes[cloud.label(i)].push_back(i);
+    for (const int i : points) classes[cloud.label(i)].push_back(i);
     std::vector<SearchGroup> groups;
     for (auto& [label, members] : classes) {
         if (members.size() < 2) continue;

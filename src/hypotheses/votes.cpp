@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -34,18 +35,40 @@ RigidMap map_of(SymmetryType type, const Vector3d& a, const Vector3d& b, int dim
     return fit_of_type(type, {{a, b}}, dimension);
 }
 
-using Cell = Eigen::Array<std::int64_t, 3, 1>;
+/// A cell of the space of isometries, and the side of each axis on which the next one is nearer.
+struct Cell {
+    Cell(const Vector3d& place, double size) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double at = place[static_cast<Eigen::Index>(axis)] / size, low = std::floor(at);
+            sum += static_cast<std::uint64_t>(static_cast<std::int64_t>(low)) * kFactors[axis];
+            beside[axis] = at - low < 0.5 ? 0 - kFactors[axis] : kFactors[axis];
+        }
+    }
 
-Cell home_of(const Vector3d& place, double size) {
-    return (place.array() / size).floor().cast<std::int64_t>();
-}
+    std::uint32_t key() const { return key_of(sum); }
 
-std::uint32_t key_of(const Cell& cell) {
-    return static_cast<std::uint32_t>(mixed(mixed(mixed(0, cell[2]), cell[1]), cell[0]) >> 32U);
-}
+    /// Of the seven cells whose borders are nearest: `corner` 1 to 7, a bit for each axis.
+    std::uint32_t key_beside(unsigned corner) const {
+        std::uint64_t there = sum;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            if ((corner >> axis & 1U) != 0) there += beside[axis];
+        return key_of(there);
+    }
 
-/// Votes by cell: a hash table with open addresses, small, as there are many cells and most hold one vote.
-/// Two cells of one key among so many are rare, and would only be tried in vain.
+private:
+    static constexpr std::array<std::uint64_t, 3> kFactors{0xD1B54A32D192ED03ULL, 0xAEF17502108EF2D9ULL,
+                                                           0x9FB21C651E98DF25ULL};
+    static std::uint32_t key_of(std::uint64_t sum) {
+        return static_cast<std::uint32_t>(mixed(sum, 0) >> 32U);
+    }
+
+    std::uint64_t sum = 0;
+    std::array<std::uint64_t, 3> beside{};
+};
+
+/// Votes by cell: a hash table with open addresses. Most cells beside a cell are empty, which a small set of
+/// bits tells without a look at the table. Two cells of one key among so many are rare, and would only be
+/// tried in vain.
 class Cells {
 public:
     explicit Cells(std::size_t most) {
@@ -53,6 +76,7 @@ public:
         while (size < 2 * most) size *= 2;
         mask_ = size - 1;
         slots_.resize(size);
+        filled_.resize(size / 8);
     }
 
     struct Slot {
@@ -66,10 +90,12 @@ public:
         if (s.count++ == 0) {
             s.key = key;
             s.first = ballot;
+            filled_[word(key)] |= bit(key);
         }
     }
     /// An empty slot where there are no votes.
     const Slot& at(std::uint32_t key) const { return slots_[place(key)]; }
+    int count(std::uint32_t key) const { return (filled_[word(key)] & bit(key)) != 0 ? at(key).count : 0; }
 
 private:
     std::size_t place(std::uint32_t key) const {
@@ -77,16 +103,106 @@ private:
         while (slots_[k].count > 0 && slots_[k].key != key) k = (k + 1) & mask_;
         return k;
     }
+    std::size_t word(std::uint32_t key) const { return (key >> 6U) & (filled_.size() - 1); }
+    static std::uint64_t bit(std::uint32_t key) { return std::uint64_t{1} << (key & 63U); }
 
     std::size_t mask_ = 0;
     std::vector<Slot> slots_;
+    std::vector<std::uint64_t> filled_;
+};
+
+/// The votes of one kind, counted.
+class Count {
+public:
+    Count(const Cloud& cloud, SymmetryType type, const PointPairs& pairs)
+        : cloud_(cloud), type_(type), alive_(pairs.size()) {
+        const Vector3d outside = 2.2 * cloud.radius() * kOutside.normalized();
+        const Vector3d far = cloud.dimension() == 2 ? Vector3d(outside.x(), outside.y(), 0) : outside;
+        ballots_.reserve(pairs.size());
+        for (const auto& [i, j] : pairs)
+            ballots_.push_back({ballot_place(type, cloud[i], cloud[j], far), i, j});
+        std::iota(alive_.begin(), alive_.end(), 0);
+    }
+
+    /// The fullest cells of this size, the fullest last. What was alone in a wider cell is not asked again.
+    void fullest(double size, std::size_t most, std::vector<Hypothesis>& out) {
+        std::vector<Ranked> ranked = count(size);
+        if (ranked.size() > most) {
+            std::nth_element(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(most),
+                             ranked.end());
+            ranked.resize(most);
+        }
+        std::sort(ranked.rbegin(), ranked.rend());
+        for (const Ranked& r : ranked)
+            out.push_back(hypothesis(ballots_[static_cast<std::size_t>(r.first)], size));
+    }
+
+private:
+    struct Ranked {
+        int votes;
+        int first;
+        bool operator<(const Ranked& o) const { return votes != o.votes ? votes > o.votes : first < o.first; }
+    };
+
+    std::vector<Ranked> count(double size) {
+        Cells cells(alive_.size());
+        std::vector<std::uint32_t> keys;
+        keys.reserve(alive_.size());
+        for (const int b : alive_) {
+            keys.push_back(Cell(place(b), size).key());
+            cells.add(keys.back(), b);
+        }
+        std::vector<Ranked> ranked;
+        std::vector<int> company;
+        for (std::size_t k = 0; k < alive_.size(); ++k) {
+            const int b = alive_[k];
+            const Cells::Slot& own = cells.at(keys[k]);
+            const bool leads = own.first == b;  // the others of its cell need not look further
+            if (!leads && own.count >= kFewVotes) {
+                company.push_back(b);
+                continue;
+            }
+            // A cell is joined with the seven whose borders the vote is nearest to.
+            const Cell home(place(b), size);
+            int votes = own.count, fullest = own.count;
+            for (unsigned corner = 1; corner < 8; ++corner) {
+                const int near = cells.count(home.key_beside(corner));
+                votes += near;
+                fullest = std::max(fullest, near);
+            }
+            if (votes < kFewVotes) continue;
+            company.push_back(b);
+            if (leads && own.count == fullest) ranked.push_back({votes, b});
+        }
+        alive_ = std::move(company);
+        return ranked;
+    }
+
+    const Vector3d& place(int ballot) const { return ballots_[static_cast<std::size_t>(ballot)].place; }
+
+    Hypothesis hypothesis(const Ballot& b, double size) const {
+        Hypothesis h;
+        h.type = type_;
+        h.map = map_of(type_, cloud_[b.from], cloud_[b.to], cloud_.dimension());
+        h.center = (cloud_[b.from] + cloud_[b.to]) / 2;
+        h.radius = (cloud_[b.from] - cloud_[b.to]).norm() / 2;
+        h.off = size / 4;
+        h.from[0] = b.from;
+        h.to[0] = b.to;
+        return h;
+    }
+
+    const Cloud& cloud_;
+    SymmetryType type_;
+    std::vector<Ballot> ballots_;
+    std::vector<int> alive_;  // those that are not alone in a wider cell
 };
 
 }  // namespace
 
-PointPairs spread_pairs(const Cloud& cloud, std::size_t most) {
+PointPairs spread_pairs(const Cloud& cloud, const SearchGroup& points, std::size_t most) {
     std::map<int, std::vector<int>> classes;
-    for (int i = 0; i < cloud.size(); ++i) classes[cloud.label(i)].push_back(i);
+    for (const int i : points) classes[cloud.label(i)].push_back(i);
     double total = 0;
     for (const auto& [label, members] : classes)
         total += static_cast<double>(members.size()) * static_cast<double>(members.size() - 1) / 2;
@@ -128,83 +244,11 @@ PointPairs pairs_within(const SearchGroup& group) {
 
 std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, const PointPairs& pairs, double reach,
                              std::size_t most) {
-    const Vector3d outside = 2.2 * cloud.radius() * kOutside.normalized();
-    const Vector3d far = cloud.dimension() == 2 ? Vector3d(outside.x(), outside.y(), 0) : outside;
-    std::vector<Ballot> ballots;
-    ballots.reserve(pairs.size());
-    for (const auto& [i, j] : pairs) ballots.push_back({ballot_place(type, cloud[i], cloud[j], far), i, j});
-
-    std::vector<double> sizes;
+    Count count(cloud, type, pairs);
+    std::vector<Hypothesis> out;  // the widest cells first, and last turned round
     const double finest = 8 * cloud.scene().resolution;
-    double coarse = 2 * reach;
-    while (coarse > finest) {
-        sizes.push_back(coarse);
-        coarse /= 8;
-    }
-    sizes.push_back(finest);
-
-    struct Ranked {
-        int votes;
-        int first;
-        bool operator<(const Ranked& o) const { return votes != o.votes ? votes > o.votes : first < o.first; }
-    };
-    std::vector<Hypothesis> out;             // the widest cells first, and last turned round
-    std::vector<int> alive(ballots.size());  // those that are not alone in a wider cell
-    std::iota(alive.begin(), alive.end(), 0);
-    for (const double size : sizes) {
-        Cells cells(alive.size());
-        std::vector<std::uint32_t> keys;
-        keys.reserve(alive.size());
-        for (const int b : alive) {
-            keys.push_back(key_of(home_of(ballots[static_cast<std::size_t>(b)].place, size)));
-            cells.add(keys.back(), b);
-        }
-        std::vector<Ranked> ranked;
-        std::vector<int> company;
-        for (std::size_t k = 0; k < alive.size(); ++k) {
-            const int b = alive[k];
-            const Cells::Slot& own = cells.at(keys[k]);
-            const bool leads = own.first == b;  // the others of its cell need not look further
-            if (!leads && own.count >= kFewVotes) {
-                company.push_back(b);
-                continue;
-            }
-            // A cell is joined with the seven whose borders the vote is nearest to.
-            const Vector3d& p = ballots[static_cast<std::size_t>(b)].place;
-            const Cell home = home_of(p, size);
-            Cell beside;
-            for (int axis = 0; axis < 3; ++axis)
-                beside[axis] = home[axis] + (p[axis] / size - static_cast<double>(home[axis]) < 0.5 ? -1 : 1);
-            int votes = own.count, fullest = own.count;
-            for (int corner = 1; corner < 8; ++corner) {
-                const auto pick = [&](int axis) {
-                    return (corner >> axis & 1) == 0 ? home[axis] : beside[axis];
-                };
-                const int near = cells.at(key_of({pick(0), pick(1), pick(2)})).count;
-                votes += near;
-                fullest = std::max(fullest, near);
-            }
-            if (votes < kFewVotes) continue;
-            company.push_back(b);
-            if (leads && own.count == fullest) ranked.push_back({votes, b});
-        }
-        alive = std::move(company);
-        std::sort(ranked.begin(), ranked.end());
-        if (ranked.size() > most) ranked.resize(most);
-        std::reverse(ranked.begin(), ranked.end());
-        for (const Ranked& r : ranked) {
-            const Ballot& b = ballots[static_cast<std::size_t>(r.first)];
-            Hypothesis h;
-            h.type = type;
-            h.map = map_of(type, cloud[b.from], cloud[b.to], cloud.dimension());
-            h.center = (cloud[b.from] + cloud[b.to]) / 2;
-            h.radius = (cloud[b.from] - cloud[b.to]).norm() / 2;
-            h.off = size / 4;
-            h.from[0] = b.from;
-            h.to[0] = b.to;
-            out.push_back(h);
-        }
-    }
+    for (double size = 2 * reach; size > finest; size /= 8) count.fullest(size, most, out);
+    count.fullest(finest, most, out);
     std::reverse(out.begin(), out.end());
     return out;
 }

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "hypotheses/generators.hpp"
 #include "parallel_for.hpp"
 #include "points/diameter.hpp"
 #include "support/collection.hpp"
 #include "support/pattern.hpp"
+#include "support/representatives.hpp"
 #include "support/spread.hpp"
 
 namespace insym {
@@ -45,20 +47,17 @@ public:
 
     RobustResult run(TypeSet types) {
         const double reach = gatherer_.reach();
-        const auto n = static_cast<std::size_t>(cloud_.size());
-        // So many hypotheses of each source, for 100 points; in a large set one costs little, as most are
-        // local, and what there is to find grows with the points.
-        const auto budget = [&](double at_100) {
-            const double share = static_cast<double>(n) / 100;
-            return static_cast<std::size_t>(40 + at_100 / (share * share));
-        };
-        // The same in looks at a point: many are needed where noise hides which are meant.
-        const auto looked = [&](double looks) {
-            return static_cast<std::size_t>(100 + looks / static_cast<double>(n));
-        };
-        offer(frames(cloud_, Vector3d::Zero(), reach, budget(1000)));
-        offer_votes(reach, budget(600) + std::min<std::size_t>(n / 4, 500));
-        offer_groups(reach, {looked(3e5) + n / 4, looked(1e5) + n / 8, budget(200) + n / 8, 1e6});
+        offer(frames(cloud_, Vector3d::Zero(), reach, static_cast<std::size_t>(budget(1000))));
+        SearchGroup points(static_cast<std::size_t>(cloud_.size()));
+        std::iota(points.begin(), points.end(), 0);
+        // What is exact first, which is found among few candidates; what is not, then among few points.
+        constexpr double kExact = 4;
+        const double exact = kExact * cloud_.scene().resolution;
+        if (exact < reach) {
+            look_at(points, exact);
+            points = representatives(cloud_, collection_.supports());
+        }
+        look_at(points, reach);
         offer_roots();
         close_products();
         RobustResult result;
@@ -69,18 +68,43 @@ public:
     }
 
 private:
+    /// So many hypotheses of each source, for 100 points; in a large set one costs little, as most are local,
+    /// and what there is to find grows with the points.
+    double budget(double at_100) const {
+        const double hundreds = cloud_.size() / 100.0;
+        return 40 + at_100 / (hundreds * hundreds);
+    }
+
+    /// Hypotheses from pairs and chains of `points` to a tolerance.
+    void look_at(const SearchGroup& points, double reach) {
+        const std::size_t n = points.size();
+        // Fewer points, fewer hypotheses.
+        const double share = static_cast<double>(n) / cloud_.size();
+        const auto of_share = [&](double most) { return static_cast<std::size_t>(share * share * most); };
+        // In looks at a point: many are needed where noise hides which are meant.
+        const auto looked = [&](double looks) { return 100 + looks / cloud_.size(); };
+        const double m = static_cast<double>(n);
+        offer_votes(points, reach, of_share(budget(600) + std::min(m / 4, 500.0)));
+        offer_groups(points, reach,
+                     {of_share(looked(3e5) + m / 4), of_share(looked(1e5) + m / 8),
+                      of_share(budget(200) + m / 8), share * 1e6, share * share});
+    }
+
     /// Half-turns in the plane are inversions there.
     std::vector<SymmetryType> types_voted() const {
         return {SymmetryType::translation, SymmetryType::mirror,
                 cloud_.dimension() == 2 ? SymmetryType::half_turn : SymmetryType::inversion};
     }
 
-    bool all_pairs_vote() const { return cloud_.size() * (cloud_.size() - 1.0) / 2 <= kMostPairs; }
+    static bool all_pairs_vote(const SearchGroup& points) {
+        return points.size() * (points.size() - 1) / 2 <= kMostPairs;
+    }
 
-    void offer_votes(double reach, std::size_t most) {
+    void offer_votes(const SearchGroup& points, double reach, std::size_t most) {
         const std::vector<SymmetryType> types = types_voted();
         // Where groups vote by themselves, a sample finds what covers much of the set.
-        const PointPairs pairs = spread_pairs(cloud_, all_pairs_vote() ? kMostPairs : kMostPairs / 5);
+        const PointPairs pairs =
+            spread_pairs(cloud_, points, all_pairs_vote(points) ? kMostPairs : kMostPairs / 5);
         std::vector<std::vector<Hypothesis>> votes(types.size());
         monitor_.begin_stage("votes of pairs", types.size());
         parallel_for(types.size(),
@@ -100,7 +124,8 @@ private:
     /// How much is made of the groups together: each has its share.
     struct GroupBudget {
         std::size_t chains, half_turns, votes;
-        double looks;
+        double looks;   // at pairs of pairs
+        double effort;  // of one group, for chains
 
         /// What the groups from one share of the whole to another may spend.
         GroupBudget between(double from, double to) const {
@@ -110,7 +135,7 @@ private:
                 };
                 return static_cast<std::size_t>(upto(to) - upto(from));
             };
-            return {part(chains), part(half_turns), part(votes), (to - from) * looks};
+            return {part(chains), part(half_turns), part(votes), (to - from) * looks, effort};
         }
     };
 
@@ -121,9 +146,14 @@ private:
         const auto kept = [&](std::size_t tried) { return std::max(kLeast, kSpare * tried); };
         Suggestions out;
         if (monitor_.should_stop()) return out;
-        out.chains = agreeing_first(cloud_, chains(cloud_, group, reach, kept(budget.chains)));
-        out.half_turns =
-            agreeing_first(cloud_, half_turns(cloud_, group, reach, budget.looks, kept(budget.half_turns)));
+        const GroupDistances known(cloud_, group);
+        parallel_for(2, [&](int k) {
+            if (k == 0)
+                out.chains = agreeing_first(cloud_, chains(known, reach, budget.effort, kept(budget.chains)));
+            else
+                out.half_turns =
+                    agreeing_first(cloud_, half_turns(known, reach, budget.looks, kept(budget.half_turns)));
+        });
         if (!with_votes) return out;
         const PointPairs pairs = pairs_within(group);
         for (const SymmetryType type : types_voted())
@@ -138,16 +168,16 @@ private:
     }
 
     /// A few groups at a time: the search for candidates needs no knowledge of what was found.
-    void offer_groups(double reach, const GroupBudget& budget) {
+    void offer_groups(const SearchGroup& points, double reach, const GroupBudget& budget) {
         constexpr std::size_t kGroup = 512, kAtATime = 16;
-        const std::vector<SearchGroup> groups = search_groups(cloud_, kGroup);
+        const std::vector<SearchGroup> groups = search_groups(cloud_, points, kGroup);
         monitor_.begin_stage("chains of points", groups.size());
         std::vector<double> before{0};  // points in the groups before each
         for (const SearchGroup& g : groups) before.push_back(before.back() + static_cast<double>(g.size()));
         const auto budget_of = [&](std::size_t k) {
             return budget.between(before[k] / before.back(), before[k + 1] / before.back());
         };
-        const bool with_votes = !all_pairs_vote();
+        const bool with_votes = !all_pairs_vote(points);
         std::vector<Suggestions> found(kAtATime);
         for (std::size_t first = 0; first < groups.size() && !monitor_.should_stop(); first += kAtATime) {
             const std::size_t count = std::min(kAtATime, groups.size() - first);

@@ -1,0 +1,72 @@
+#include "support/representatives.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace insym {
+namespace {
+
+constexpr int kFew = 100;                      // points, all of which cost little
+constexpr double kExact = 8;                   // resolutions
+constexpr double kSure = -10;                  // significance
+constexpr std::size_t kMost = 100;             // supports
+constexpr std::size_t kLeast = 2, kShare = 4;  // of an orbit stay
+
+std::vector<const Support*> best_exact(const Cloud& cloud, const std::vector<Support>& supports) {
+    std::vector<const Support*> out;
+    for (const Support& s : supports)
+        if (s.significance < kSure && s.tolerance <= kExact * cloud.scene().resolution) out.push_back(&s);
+    std::stable_sort(out.begin(), out.end(),
+                     [](const Support* a, const Support* b) { return a->significance < b->significance; });
+    if (out.size() > kMost) out.resize(kMost);
+    return out;
+}
+
+/// Points that the supports carry into one another.
+std::vector<SearchGroup> orbits(int n, const std::vector<const Support*>& supports) {
+    std::vector<int> above(static_cast<std::size_t>(n));
+    std::iota(above.begin(), above.end(), 0);
+    const auto top = [&](int i) {
+        int& up = above[static_cast<std::size_t>(i)];
+        while (up != above[static_cast<std::size_t>(up)]) up = above[static_cast<std::size_t>(up)];
+        return up;
+    };
+    for (const Support* s : supports)
+        for (const auto& [from, to] : s->links)
+            above[static_cast<std::size_t>(std::max(top(from), top(to)))] = std::min(top(from), top(to));
+    std::map<int, SearchGroup> by_top;
+    for (int i = 0; i < n; ++i) by_top[top(i)].push_back(i);
+    std::vector<SearchGroup> out;
+    out.reserve(by_top.size());
+    for (auto& [_, members] : by_top) out.push_back(std::move(members));
+    return out;
+}
+
+/// Farthest from its middle first.
+void outer_first(const Cloud& cloud, SearchGroup& orbit) {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const int i : orbit) middle += cloud[i] / static_cast<double>(orbit.size());
+    std::stable_sort(orbit.begin(), orbit.end(), [&](int a, int b) {
+        return (cloud[a] - middle).squaredNorm() > (cloud[b] - middle).squaredNorm();
+    });
+}
+
+}  // namespace
+
+SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports) {
+    SearchGroup out;
+    for (SearchGroup& orbit : orbits(cloud.size(), best_exact(cloud, supports))) {
+        const std::size_t stay =
+            cloud.size() <= kFew ? orbit.size() : std::max(kLeast, orbit.size() / kShare);
+        if (stay < orbit.size()) {
+            outer_first(cloud, orbit);
+            orbit.resize(stay);
+        }
+        out.insert(out.end(), orbit.begin(), orbit.end());
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+}  // namespace insym

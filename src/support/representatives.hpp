@@ -1,0 +1,17 @@
+// Points that stand for the others once the exact symmetries are known.
+#pragma once
+
+#include <vector>
+
+#include "hypotheses/generators.hpp"
+#include "points/cloud.hpp"
+#include "support/support.hpp"
+
+namespace insym {
+
+/// All points but, of those that the best exact ones of `supports` carry into one another, three quarters:
+/// the outer ones of such an orbit stay, as its image under any other symmetry has them at its ends, too. Of
+/// a few points all. Ascending. O(n log n).
+SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports);
+
+}  // namespace insym
