@@ -238,8 +238,9 @@ public:
     std::vector<Candidate> run(double looks) {
         const int n = static_cast<int>(group_.size());
         const int picks = std::max(4, std::min(n, static_cast<int>(looks / n / n)));
-        for (int a = 0; a < n; ++a)
-            for (int mate = a + 1; mate < n; ++mate)
+        // What is looked up at random is of the mate.
+        for (int mate = 1; mate < n; ++mate)
+            for (int a = 0; a < mate; ++a)
                 for (int k = 0; k < picks; ++k) {
                     const int b =
                         picks == n

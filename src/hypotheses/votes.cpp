@@ -93,6 +93,9 @@ public:
             filled_[word(key)] |= bit(key);
         }
     }
+    /// Starts to fetch what add and at of this key will look at: the table is larger than a cache.
+    void expect(std::uint32_t key) const { __builtin_prefetch(&slots_[key & mask_], 1); }
+
     /// An empty slot where there are no votes.
     const Slot& at(std::uint32_t key) const { return slots_[place(key)]; }
     int count(std::uint32_t key) const { return (filled_[word(key)] & bit(key)) != 0 ? at(key).count : 0; }
@@ -148,13 +151,19 @@ private:
         Cells cells(alive_.size());
         std::vector<std::uint32_t> keys;
         keys.reserve(alive_.size());
-        for (const int b : alive_) {
-            keys.push_back(Cell(place(b), size).key());
-            cells.add(keys.back(), b);
+        for (const int b : alive_) keys.push_back(Cell(place(b), size).key());
+        constexpr std::size_t kAhead = 16;
+        const auto expect = [&](std::size_t k) {
+            if (k < keys.size()) cells.expect(keys[k]);
+        };
+        for (std::size_t k = 0; k < keys.size(); ++k) {
+            expect(k + kAhead);
+            cells.add(keys[k], alive_[k]);
         }
         std::vector<Ranked> ranked;
         std::vector<int> company;
         for (std::size_t k = 0; k < alive_.size(); ++k) {
+            expect(k + kAhead);
             const int b = alive_[k];
             const Cells::Slot& own = cells.at(keys[k]);
             const bool leads = own.first == b;  // the others of its cell need not look further

@@ -21,22 +21,35 @@ Distances::Distances(const std::vector<Point>& positions)
         double* out = matrix_.data() + start(i, n_);
         for (std::size_t j = 0; j < positions.size(); ++j)
             out[j] = distance(positions[static_cast<std::size_t>(i)], positions[j]);
-
-        int* others = order_.data() + start(i, n_ - 1);
-        std::iota(others, others + i, 0);
-        std::iota(others + i, others + n_ - 1, i + 1);
-        std::sort(others, others + n_ - 1,
-                  [out](int a, int b) { return out[a] != out[b] ? out[a] < out[b] : a < b; });
-
-        double* sorted = sorted_.data() + start(i, n_ - 1);
-        int* directory = directory_.data() + start(i, steps_);
-        int step = 0;
-        for (int k = 0; k < n_ - 1; ++k) {
-            sorted[k] = out[others[k]];
-            for (; step < steps_ && step <= sorted[k] * directory_scale_; ++step) directory[step] = k;
-        }
-        for (; step < steps_; ++step) directory[step] = n_ - 1;
+        sort_row(i);
     });
+}
+
+/// Into the steps of the directory first, where few are left to be told apart.
+void Distances::sort_row(int i) {
+    const std::span<const double> distance = row(i);
+    double* sorted = sorted_.data() + start(i, n_ - 1);
+    int* order = order_.data() + start(i, n_ - 1);
+    int* directory = directory_.data() + start(i, steps_);
+    const auto step_of = [&](int j) {
+        return static_cast<std::size_t>(distance[static_cast<std::size_t>(j)] * directory_scale_);
+    };
+    std::vector<int> next(static_cast<std::size_t>(steps_) + 1, 0);
+    for (int j = 0; j < n_; ++j)
+        if (j != i) ++next[step_of(j) + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::copy(next.begin(), next.end() - 1, directory);
+    for (int j = 0; j < n_; ++j)
+        if (j != i) order[next[step_of(j)]++] = j;
+    const auto before = [&](int a, int b) {
+        const double x = distance[static_cast<std::size_t>(a)], y = distance[static_cast<std::size_t>(b)];
+        return x != y ? x < y : a < b;
+    };
+    for (int s = 0; s < steps_; ++s) {
+        int *first = order + directory[s], *last = order + next[static_cast<std::size_t>(s)];
+        if (last - first > 1 && !std::is_sorted(first, last, before)) std::sort(first, last, before);
+    }
+    for (int k = 0; k < n_ - 1; ++k) sorted[k] = distance[static_cast<std::size_t>(order[k])];
 }
 
 }  // namespace insym

@@ -41,6 +41,8 @@ public:
     }
 
 private:
+    void sort_row(int i);
+
     static std::size_t start(int i, int width) {
         return static_cast<std::size_t>(i) * static_cast<std::size_t>(width);
     }

@@ -43,9 +43,9 @@ public:
 
     /// The share of a's points that b carries or leaves in place is (nearly) all.
     bool carries(const Item& b, const Item& a) const {
-        const auto in = std::count_if(a.points.begin(), a.points.end(),
-                                      [&](int p) { return b.carried[static_cast<std::size_t>(p)]; });
-        return 10 * static_cast<std::size_t>(in) >= 9 * a.points.size();
+        std::size_t left = a.points.size() / 10;  // that it may leave out
+        return std::all_of(a.points.begin(), a.points.end(),
+                           [&](int p) { return b.carried[static_cast<std::size_t>(p)] || left-- > 0; });
     }
 
     const Item& operator[](std::size_t k) const { return items_[k]; }
@@ -141,24 +141,27 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
               [&](std::size_t a, std::size_t b) { return motion(a) > motion(b); });
     for (std::size_t i = 0; i < order.size() && !monitor.should_stop(); ++i) {
         const std::size_t g = order[i];
+        const double own = symmetries[g].significance;
+        std::vector<std::size_t> better;
+        for (std::size_t k = 0; k < symmetries.size(); ++k) {
+            // A power of a chance is no intent. A half-turn, a mirror or an inversion can be a power as well.
+            const double its = symmetries[k].significance;
+            if (k != g && its <= own && own <= kShare * its &&
+                (is_pair_type(symmetries[k].type) || motion(k) >= motion(g)) && all.carries(all[g], all[k]))
+                better.push_back(k);
+        }
+        std::sort(better.begin(), better.end(), [&](std::size_t a, std::size_t b) {
+            return symmetries[a].significance < symmetries[b].significance;
+        });
         std::vector<RigidMap> powers = all.powers(g, kMostPowers);
         powers.erase(powers.begin(), powers.begin() + 2);
-        const double own = symmetries[g].significance;
-        double best = own;
-        for (std::size_t k = 0; k < symmetries.size(); ++k) {
-            // A half-turn, a mirror or an inversion can be a power as well.
-            if (k == g || symmetries[k].significance > best ||
-                (!is_pair_type(symmetries[k].type) && motion(k) < motion(g)))
-                continue;
-            // A power of a chance is no intent.
-            if (own > kShare * symmetries[k].significance || !all.carries(all[g], all[k])) continue;
-            for (std::size_t j = 0; j < powers.size(); ++j) {
-                if (!all.equal(all[k], powers[j], slack_of_power(all[k], all[g], j))) continue;
-                best = symmetries[k].significance * (1 + 1e-9);
-                break;
-            }
-        }
-        symmetries[g].significance = best;
+        const auto is_power = [&](std::size_t k) {
+            for (std::size_t j = 0; j < powers.size(); ++j)
+                if (all.equal(all[k], powers[j], slack_of_power(all[k], all[g], j))) return true;
+            return false;
+        };
+        const auto best = std::find_if(better.begin(), better.end(), is_power);
+        if (best != better.end()) symmetries[g].significance = symmetries[*best].significance * (1 + 1e-9);
     }
 }
 

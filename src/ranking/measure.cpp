@@ -66,6 +66,8 @@ void Measure::cover(Symmetry& symmetry) const {
     // A hair more, so that the point that is farthest off does not miss itself by rounding.
     const double exact_reach = std::max({symmetry.tolerance.min, symmetry.deviation.max, scene_.resolution});
     const double reach = exact_reach + std::max(5e-7 * exact_reach, 1e-5 * scene_.resolution);
+    std::vector<char> linked(scene_.points.size(), 0);
+    for_each_link(symmetry, [&](int from, int) { linked[static_cast<std::size_t>(from)] = 1; });
     int covered = 0;
     symmetry.fixed_points.clear();
     for (int i = 0; i < scene_.size(); ++i) {
@@ -74,7 +76,7 @@ void Measure::cover(Symmetry& symmetry) const {
         if ((to_vector(image) - to_vector(p)).norm() <= reach) {
             symmetry.fixed_points.push_back(i);
             ++covered;
-        } else if (grid_.any_within(image, reach)) {
+        } else if (linked[static_cast<std::size_t>(i)] != 0 || grid_.any_within(image, reach)) {
             ++covered;
         }
     }

@@ -359,7 +359,8 @@ Gatherer::Region Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map
     Region region{h.center, 2 * h.radius};
     const double chance = 2 * significance_.background().chance(reach);
     int before = -1;
-    for (; region.radius < far; region.radius *= 2) {
+    double wider = 2;
+    for (; region.radius < far; region.radius *= wider) {
         link(h.type, map, reach, region, linked);
         const bool ended = before >= 0 && linked.count - before <= chance * linked.looks;
         if (large && ended && sampled(h, map, reach) < kSure) return region;
@@ -367,6 +368,8 @@ Gatherer::Region Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map
         if (linked.count < least_links(h.type)) continue;
         const Judged judged = judge(h.type, linked, reach);
         map = refit(h.type, links_within(linked, judged.tolerance), map);
+        // What is off by a tenth of the reach here is so by two tenths at twice the distance.
+        wider = std::clamp(reach / (2 * judged.tolerance), 2.0, 8.0);
     }
     return {};
 }
@@ -397,8 +400,10 @@ std::optional<Support> Gatherer::settle(SymmetryType type, RigidMap map, double 
         if (judged.significance > worst + 4 || links == last) break;
         const RigidMap better = refit(type, links, map);
         last = std::move(links);
+        // No link would change but by chance.
+        constexpr double kStill = 0.1;
         if ((better.linear - map.linear).norm() * cloud_.radius() + (better.shift - map.shift).norm() <
-            1e-3 * cloud_.scene().resolution)
+            kStill * cloud_.scene().resolution)
             break;
         map = better;
     }
@@ -420,10 +425,12 @@ std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double wor
     std::optional<Support> best = settle(hypothesis.type, map, near, kept + 3, region, linked);
     if (!best) return std::nullopt;
     const bool few = cloud_.size() <= 2 * kSample;
+    double looked = near;
     if (near < reach() &&
         (few || sampled(hypothesis, best->map, reach()) > sampled(hypothesis, best->map, near))) {
         const auto wider = settle(best->type, best->map, reach(), kept + 3, region, linked);
         if (wider && wider->significance < best->significance) best = wider;
+        looked = reach();
     }
     Vector3d center = Vector3d::Zero();
     for (const auto& [from, to] : best->links)
@@ -438,7 +445,7 @@ std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double wor
     }
     for (const auto& [type, plain] :
          simpler_kinds(best->type, best->map, center, radius, slack, cloud_.dimension())) {
-        const auto other = settle(type, plain, reach(), kept, region, linked);
+        const auto other = settle(type, plain, looked, kept, region, linked);
         if (other && worth(*other, cloud_.dimension()) <= worth(*best, cloud_.dimension())) best = other;
     }
     if (best->links.empty()) return std::nullopt;
