@@ -84,10 +84,25 @@ private:
         // In looks at a point: many are needed where noise hides which are meant.
         const auto looked = [&](double looks) { return 100 + looks / cloud_.size(); };
         const double m = static_cast<double>(n);
-        offer_votes(points, reach, of_share(budget(600) + std::min(m / 4, 500.0)));
-        offer_groups(points, reach,
-                     {of_share(looked(3e5) + m / 4), of_share(looked(1e5) + m / 8),
-                      of_share(budget(200) + m / 8), share * 1e6, share * share});
+        const auto voted = of_share(budget(600) + std::min(m / 4, 500.0));
+        const Groups groups(cloud_, points, !all_pairs_vote(points), reach,
+                            {of_share(looked(3e5) + m / 4), of_share(looked(1e5) + m / 8),
+                             of_share(budget(200) + m / 8), share * 1e6, share * share * share});
+        // None of them needs to know what another finds.
+        std::vector<std::vector<Hypothesis>> votes;
+        std::vector<Suggestions> first;
+        parallel_for(2, [&](int k) {
+            if (k == 0)
+                votes = votes_of(points, reach, voted / 2);
+            else
+                first = suggestions_from(groups, 0);
+        });
+        monitor_.begin_stage("votes of pairs", votes.size());
+        for (const std::vector<Hypothesis>& v : votes) {
+            offer(v, voted);
+            monitor_.advance();
+        }
+        offer_groups(groups, std::move(first));
     }
 
     /// Half-turns in the plane are inversions there.
@@ -100,19 +115,16 @@ private:
         return points.size() * (points.size() - 1) / 2 <= kMostPairs;
     }
 
-    void offer_votes(const SearchGroup& points, double reach, std::size_t most) {
+    std::vector<std::vector<Hypothesis>> votes_of(const SearchGroup& points, double reach,
+                                                  std::size_t most) const {
         const std::vector<SymmetryType> types = types_voted();
         // Where groups vote by themselves, a sample finds what covers much of the set.
         const PointPairs pairs =
             spread_pairs(cloud_, points, all_pairs_vote(points) ? kMostPairs : kMostPairs / 5);
         std::vector<std::vector<Hypothesis>> votes(types.size());
-        monitor_.begin_stage("votes of pairs", types.size());
         parallel_for(types.size(),
-                     [&](std::size_t k) { votes[k] = vote(cloud_, types[k], pairs, reach, most / 2); });
-        for (const std::vector<Hypothesis>& v : votes) {
-            offer(v, most);
-            monitor_.advance();
-        }
+                     [&](std::size_t k) { votes[k] = vote(cloud_, types[k], pairs, reach, most); });
+        return votes;
     }
 
     /// What a group of points suggests.
@@ -139,25 +151,55 @@ private:
         }
     };
 
-    Suggestions suggestions(const SearchGroup& group, double reach, const GroupBudget& budget,
-                            bool with_votes) {
+    /// Groups of points to a tolerance, with what each may spend.
+    struct Groups {
+        Groups(const Cloud& cloud, const SearchGroup& points, bool vote, double within, GroupBudget all)
+            : groups(search_groups(cloud, points, kGroup)), with_votes(vote), reach(within), budget(all) {
+            for (const SearchGroup& g : groups)
+                before.push_back(before.back() + static_cast<double>(g.size()));
+        }
+
+        GroupBudget budget_of(std::size_t k) const {
+            return budget.between(before[k] / before.back(), before[k + 1] / before.back());
+        }
+
+        static constexpr std::size_t kGroup = 512;
+        std::vector<SearchGroup> groups;
+        bool with_votes;
+        double reach;
+        GroupBudget budget;
+        std::vector<double> before{0};  // points in the groups before each
+    };
+
+    /// So many groups at a time.
+    static constexpr std::size_t kAtATime = 16;
+
+    std::vector<Suggestions> suggestions_from(const Groups& groups, std::size_t first) const {
+        std::vector<Suggestions> found(std::min(kAtATime, groups.groups.size() - first));
+        parallel_for(found.size(), [&](std::size_t k) { found[k] = suggestions(groups, first + k); });
+        return found;
+    }
+
+    Suggestions suggestions(const Groups& groups, std::size_t k) const {
         // So many candidates are kept for each that is tried: most of them say the same, or what was found.
         constexpr std::size_t kSpare = 20, kLeast = 20000;  // to keep some costs little
         const auto kept = [&](std::size_t tried) { return std::max(kLeast, kSpare * tried); };
         Suggestions out;
         if (monitor_.should_stop()) return out;
-        const GroupDistances known(cloud_, group);
-        parallel_for(2, [&](int k) {
-            if (k == 0)
-                out.chains = agreeing_first(cloud_, chains(known, reach, budget.effort, kept(budget.chains)));
+        const GroupBudget budget = groups.budget_of(k);
+        const GroupDistances known(cloud_, groups.groups[k]);
+        parallel_for(2, [&](int half) {
+            if (half == 0)
+                out.chains =
+                    agreeing_first(cloud_, chains(known, groups.reach, budget.effort, kept(budget.chains)));
             else
-                out.half_turns =
-                    agreeing_first(cloud_, half_turns(known, reach, budget.looks, kept(budget.half_turns)));
+                out.half_turns = agreeing_first(
+                    cloud_, half_turns(known, groups.reach, budget.looks, kept(budget.half_turns)));
         });
-        if (!with_votes) return out;
-        const PointPairs pairs = pairs_within(group);
+        if (!groups.with_votes) return out;
+        const PointPairs pairs = pairs_within(groups.groups[k]);
         for (const SymmetryType type : types_voted())
-            out.voted.push_back(vote(cloud_, type, pairs, reach, budget.votes));
+            out.voted.push_back(vote(cloud_, type, pairs, groups.reach, budget.votes));
         return out;
     }
 
@@ -167,30 +209,19 @@ private:
         return found.agreeing < kSome ? most : std::min(most / 4, found.agreeing + most / 32);
     }
 
-    /// A few groups at a time: the search for candidates needs no knowledge of what was found.
-    void offer_groups(const SearchGroup& points, double reach, const GroupBudget& budget) {
-        constexpr std::size_t kGroup = 512, kAtATime = 16;
-        const std::vector<SearchGroup> groups = search_groups(cloud_, points, kGroup);
-        monitor_.begin_stage("chains of points", groups.size());
-        std::vector<double> before{0};  // points in the groups before each
-        for (const SearchGroup& g : groups) before.push_back(before.back() + static_cast<double>(g.size()));
-        const auto budget_of = [&](std::size_t k) {
-            return budget.between(before[k] / before.back(), before[k + 1] / before.back());
-        };
-        const bool with_votes = !all_pairs_vote(points);
-        std::vector<Suggestions> found(kAtATime);
-        for (std::size_t first = 0; first < groups.size() && !monitor_.should_stop(); first += kAtATime) {
-            const std::size_t count = std::min(kAtATime, groups.size() - first);
-            parallel_for(count, [&](std::size_t k) {
-                found[k] = suggestions(groups[first + k], reach, budget_of(first + k), with_votes);
-            });
-            for (std::size_t k = 0; k < count; ++k) {
-                const GroupBudget most = budget_of(first + k);
+    /// A few groups at a time; `found`: what the first suggest.
+    void offer_groups(const Groups& groups, std::vector<Suggestions> found) {
+        monitor_.begin_stage("chains of points", groups.groups.size());
+        for (std::size_t first = 0; !found.empty() && !monitor_.should_stop();) {
+            for (std::size_t k = 0; k < found.size(); ++k) {
+                const GroupBudget most = groups.budget_of(first + k);
                 for (const std::vector<Hypothesis>& v : found[k].voted) offer(v, most.votes);
                 offer(found[k].chains.candidates, tries(found[k].chains, most.chains));
                 offer(found[k].half_turns.candidates, tries(found[k].half_turns, most.half_turns));
                 monitor_.advance();
             }
+            first += found.size();
+            found = suggestions_from(groups, first);
         }
     }
 
