@@ -225,7 +225,7 @@ Vector3d half_turn_axis(const Cloud& cloud, const std::array<int, 4>& points) {
     return along.norm() > across.norm() ? along : across;
 }
 
-/// Half-turns as pairs of pairs. A's mates are all points; B is one of a sample, nearest first.
+/// Half-turns as pairs of pairs. A's mates are all points; B is one of a sample.
 class HalfTurnSearch {
 public:
     HalfTurnSearch(const GroupDistances& group, double reach, std::size_t most)
@@ -238,15 +238,12 @@ public:
     std::vector<Candidate> run(double looks) {
         const int n = static_cast<int>(group_.size());
         const int picks = std::max(4, std::min(n, static_cast<int>(looks / n / n)));
+        all_ = picks == n;
         // What is looked up at random is of the mate.
         for (int mate = 1; mate < n; ++mate)
             for (int a = 0; a < mate; ++a)
                 for (int k = 0; k < picks; ++k) {
-                    const int b =
-                        picks == n
-                            ? k
-                            : static_cast<int>((std::int64_t{k} * n + std::int64_t{7} * a + mate) / picks) %
-                                  n;
+                    const int b = all_ ? k : pick(a, mate, k, picks);
                     if (b != a && b != mate) partner(a, mate, b);
                 }
         return best_.sorted();
@@ -255,10 +252,17 @@ public:
 private:
     const Vector3d& at(int i) const { return cloud_[group_[static_cast<std::size_t>(i)]]; }
 
+    /// Half of them near A, as what turns about an axis there is often together, half anywhere.
+    int pick(int a, int mate, int k, int picks) const {
+        if (k < picks / 2) return distances_.nearest_first(a)[static_cast<std::size_t>(k)];
+        const int n = distances_.size();
+        return static_cast<int>((std::int64_t{k} * n + std::int64_t{7} * a + mate) / picks) % n;
+    }
+
     void partner(int a, int mate, int b) {
         const double same = distances_(a, b), cross = distances_(mate, b);
         distances_.visit_shell(mate, same - slack_, same + slack_, [&](int other, double) {
-            if (other != a && other != b && other != mate && (other > b || distances_.size() > 200) &&
+            if (other != a && other != b && other != mate && (other > b || !all_) &&
                 std::abs(distances_(a, other) - cross) <= slack_)
                 add(a, mate, b, other);
             return true;
@@ -278,6 +282,7 @@ private:
     const Cloud& cloud_;
     const SearchGroup& group_;
     const Distances& distances_;
+    bool all_ = true;  // points are B in turn
     double slack_ = 0;
     BestCandidates best_;
 };

@@ -73,7 +73,7 @@ void Measure::cover(Symmetry& symmetry) const {
     for (int i = 0; i < scene_.size(); ++i) {
         const Point& p = scene_.position(i);
         const Point image = symmetry.isometry.apply(p);
-        if ((to_vector(image) - to_vector(p)).norm() <= reach) {
+        if ((to_vector(image) - to_vector(p)).squaredNorm() <= reach * reach) {
             symmetry.fixed_points.push_back(i);
             ++covered;
         } else if (linked[static_cast<std::size_t>(i)] != 0 || grid_.any_within(image, reach)) {

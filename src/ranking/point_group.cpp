@@ -221,11 +221,15 @@ private:
 
     /// Symmetries of no more than a few holes.
     void collect() {
+        constexpr int kMany = 200;
+        constexpr double kLeastCoverage = 0.3;
         for (std::size_t k = 0; k < symmetries_.size(); ++k) {
             const Symmetry& s = symmetries_[k];
             if (s.type == SymmetryType::translation || s.type == SymmetryType::screw ||
                 s.type == SymmetryType::glide_reflection)
                 continue;
+            // Of many points nearly all are carried; of a few, noise may hide which.
+            if (cloud_.size() > kMany && s.coverage < kLeastCoverage) continue;
             // A tolerance of the size of the gaps between points says nothing about their places.
             if (s.deviation.max > 0.12 * cloud_.gap()) continue;
             Candidate c{k,

@@ -54,10 +54,10 @@ public:
         constexpr double kExact = 4;
         const double exact = kExact * cloud_.scene().resolution;
         if (exact < reach) {
-            look_at(points, exact);
+            look_at(points, exact, 3e5);
             points = representatives(cloud_, collection_.supports());
         }
-        look_at(points, reach);
+        look_at(points, reach, 1e6);
         offer_roots();
         close_products();
         RobustResult result;
@@ -75,19 +75,20 @@ private:
         return 40 + at_100 / (hundreds * hundreds);
     }
 
-    /// Hypotheses from pairs and chains of `points` to a tolerance.
-    void look_at(const SearchGroup& points, double reach) {
+    /// Hypotheses from pairs and chains of `points` to a tolerance. `looks`: of all points, at pairs of
+    /// pairs.
+    void look_at(const SearchGroup& points, double reach, double looks) {
         const std::size_t n = points.size();
         // Fewer points, fewer hypotheses.
         const double share = static_cast<double>(n) / cloud_.size();
         const auto of_share = [&](double most) { return static_cast<std::size_t>(share * share * most); };
         // In looks at a point: many are needed where noise hides which are meant.
-        const auto looked = [&](double looks) { return 100 + looks / cloud_.size(); };
+        const auto looked = [&](double all) { return 100 + all / cloud_.size(); };
         const double m = static_cast<double>(n);
         const auto voted = of_share(budget(600) + std::min(m / 4, 500.0));
         const Groups groups(cloud_, points, !all_pairs_vote(points), reach,
                             {of_share(looked(3e5) + m / 4), of_share(looked(1e5) + m / 8),
-                             of_share(budget(200) + m / 8), share * 1e6, share * share * share});
+                             of_share(budget(200) + m / 8), share * looks, share * share * share});
         // None of them needs to know what another finds.
         std::vector<std::vector<Hypothesis>> votes;
         std::vector<Suggestions> first;
@@ -332,8 +333,12 @@ private:
         for (int round = 0; round < 4 && !monitor_.should_stop(); ++round) {
             const std::vector<Support>& all = collection_.supports();
             const std::size_t before = all.size();
-            for (; done < all.size(); ++done)
-                if (of_group(all[done])) whole.push_back(done);
+            std::vector<char> in_group(before - done);
+            parallel_for(in_group.size(),
+                         [&](std::size_t k) { in_group[k] = of_group(all[done + k]) ? 1 : 0; });
+            for (std::size_t k = 0; k < in_group.size(); ++k)
+                if (in_group[k] != 0) whole.push_back(done + k);
+            done = before;
             if (whole.size() > kMostElements) break;
             std::vector<Hypothesis> products;
             for (const std::size_t a : whole)

@@ -13,18 +13,9 @@ constexpr double kSure = -10;                  // significance
 constexpr std::size_t kMost = 100;             // supports
 constexpr std::size_t kLeast = 2, kShare = 4;  // of an orbit stay
 
-std::vector<const Support*> best_exact(const Cloud& cloud, const std::vector<Support>& supports) {
-    std::vector<const Support*> out;
-    for (const Support& s : supports)
-        if (s.significance < kSure && s.tolerance <= kExact * cloud.scene().resolution) out.push_back(&s);
-    std::stable_sort(out.begin(), out.end(),
-                     [](const Support* a, const Support* b) { return a->significance < b->significance; });
-    if (out.size() > kMost) out.resize(kMost);
-    return out;
-}
-
-/// Points that the supports carry into one another.
-std::vector<SearchGroup> orbits(int n, const std::vector<const Support*>& supports) {
+/// Points that the exact supports carry into one another.
+std::vector<SearchGroup> exact_orbits(const Cloud& cloud, const std::vector<Support>& supports) {
+    const int n = cloud.size();
     std::vector<int> above(static_cast<std::size_t>(n));
     std::iota(above.begin(), above.end(), 0);
     const auto top = [&](int i) {
@@ -32,9 +23,11 @@ std::vector<SearchGroup> orbits(int n, const std::vector<const Support*>& suppor
         while (up != above[static_cast<std::size_t>(up)]) up = above[static_cast<std::size_t>(up)];
         return up;
     };
-    for (const Support* s : supports)
-        for (const auto& [from, to] : s->links)
+    for (const Support& s : supports) {
+        if (s.significance > kSure || s.tolerance > kExact * cloud.scene().resolution) continue;
+        for (const auto& [from, to] : s.links)
             above[static_cast<std::size_t>(std::max(top(from), top(to)))] = std::min(top(from), top(to));
+    }
     std::map<int, SearchGroup> by_top;
     for (int i = 0; i < n; ++i) by_top[top(i)].push_back(i);
     std::vector<SearchGroup> out;
@@ -56,7 +49,7 @@ void outer_first(const Cloud& cloud, SearchGroup& orbit) {
 
 SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports) {
     SearchGroup out;
-    for (SearchGroup& orbit : orbits(cloud.size(), best_exact(cloud, supports))) {
+    for (SearchGroup& orbit : exact_orbits(cloud, supports)) {
         const std::size_t stay =
             cloud.size() <= kFew ? orbit.size() : std::max(kLeast, orbit.size() / kShare);
         if (stay < orbit.size()) {
