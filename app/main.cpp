@@ -200,7 +200,7 @@ std::string early_end(RunStatus status) {
         case RunStatus::cancelled:
             return "stopped by an interrupt; the results are what was found until then";
         case RunStatus::result_limit:
-            return "stopped as there are too many results; lower --max-tolerance";
+            return "not all of the results are kept, as --max-symmetries asks";
         case RunStatus::complete:
             break;
     }

@@ -188,6 +188,17 @@ void run_robust(const PointScene& scene, const DetectOptions& options, RunMonito
     result.stats = {found.hypotheses, 0, result.symmetries.size()};
 }
 
+/// The best of them; what they follow from ranks better and stays.
+void keep_best(std::size_t most, DetectResult& result) {
+    const std::size_t found = result.symmetries.size();
+    if (most == 0 || found <= most) return;
+    result.symmetries.resize(most);
+    result.stats.symmetries = most;
+    if (result.status == RunStatus::complete) result.status = RunStatus::result_limit;
+    result.diagnostics.push_back({"result_limit", "the best " + std::to_string(most) + " of " +
+                                                      std::to_string(found) + " symmetries are kept"});
+}
+
 }  // namespace
 
 DetectResult detect(const PointSet& points, const DetectOptions& options, const RunContext& context) {
@@ -236,6 +247,7 @@ DetectResult detect(const PointSet& points, const DetectOptions& options, const 
         }
     });
     result.status = monitor.status();
+    keep_best(options.max_symmetries, result);
     result.timing.detect_s = seconds_since(start);
     return result;
 }

@@ -8,6 +8,7 @@
 #include "insym/run_context.hpp"
 #include "insym/symmetry_type.hpp"
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ struct DetectOptions {
     double resolution = 1e-6;             ///< share of the diameter, in (0, 1): equal lengths
     std::optional<double> max_tolerance;  ///< share of the diameter, in [resolution, 1]; none: auto
     Regions regions;                      ///< method robust takes the default only
+    std::size_t max_symmetries = 0;       ///< so many of the best are kept; 0: all
 };
 
 /// The tolerances over which something holds, in the input's unit; max may be infinite.

@@ -420,7 +420,7 @@ std::string_view early_end(RunStatus status) {
         case RunStatus::cancelled:
             return "Stopped by an interrupt: what was found until then.\n";
         case RunStatus::result_limit:
-            return "Stopped because there are too many results: the first of them.\n";
+            return "Not all of the results are kept: the best of them.\n";
         case RunStatus::complete:
             break;
     }

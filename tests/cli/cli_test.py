@@ -346,6 +346,24 @@ def test_other_numbers(box):
     assert_bad_numbers(box, "--time-limit", ["0", "-1", "nan", "inf", "x"])
 
 
+def test_max_symmetries(box):
+    """The first N of the whole list, and it is said how many there were; oracle: the whole list."""
+    assert_bad_numbers(box, "--max-symmetries", ["-1", "1.5", "x"])
+    box.points("a.xyz", np.vstack([ring(6), ring(6) + [0, 0, 5]]))
+    for method in ("robust", "paper"):
+        whole = box.report("a.xyz", "--method", method, "--quiet")
+        count = len(whole["symmetries"])
+        assert whole["status"] == "complete" and count > 3
+        for most in ("0", str(count)):
+            assert box.report("a.xyz", "--method", method, "--max-symmetries", most, "--quiet")["status"] == "complete"
+        done = box.run("detect", "a.xyz", "--method", method, "--max-symmetries", "3", "--json", "-")
+        assert done.returncode == STOPPED and f"the best 3 of {count} symmetries" in done.stderr.decode(), done
+        few = checked_report(done.stdout)
+        assert few["status"] == "result_limit" and few["stats"]["symmetries"] == 3
+        assert [d["code"] for d in few["diagnostics"]] == ["result_limit"]
+        assert few["symmetries"] == whole["symmetries"][:3] and few["group"] == whole["group"]
+
+
 def test_regions(box):
     assert_bad_numbers(box, "--regions", ["0", "-1", "1.5", "x", "10001", "2,q", "2,xy", "2,", ",z", "2,x,y", "2 x"])
     box.points("a.xyz", np.vstack([ring(6), ring(6) + [0, 0, 5]]))
