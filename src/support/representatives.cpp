@@ -1,6 +1,7 @@
 #include "support/representatives.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -36,13 +37,13 @@ std::vector<SearchGroup> exact_orbits(const Cloud& cloud, const std::vector<Supp
     return out;
 }
 
-/// Farthest from its middle first.
+/// Farthest from its middle first; of equally far ones, to rounding, the first.
 void outer_first(const Cloud& cloud, SearchGroup& orbit) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (const int i : orbit) middle += cloud[i] / static_cast<double>(orbit.size());
-    std::stable_sort(orbit.begin(), orbit.end(), [&](int a, int b) {
-        return (cloud[a] - middle).squaredNorm() > (cloud[b] - middle).squaredNorm();
-    });
+    const double step = 2 * kExact * cloud.scene().resolution;
+    const auto steps = [&](int i) { return std::round((cloud[i] - middle).norm() / step); };
+    std::stable_sort(orbit.begin(), orbit.end(), [&](int a, int b) { return steps(a) > steps(b); });
 }
 
 }  // namespace
