@@ -36,22 +36,23 @@ RigidMap map_of(SymmetryType type, const Vector3d& a, const Vector3d& b, int dim
 }
 
 /// A cell of the space of isometries, and the side of each axis on which the next one is nearer.
-struct Cell {
+class Cell {
+public:
     Cell(const Vector3d& place, double size) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double at = place[static_cast<Eigen::Index>(axis)] / size, low = std::floor(at);
-            sum += static_cast<std::uint64_t>(static_cast<std::int64_t>(low)) * kFactors[axis];
-            beside[axis] = at - low < 0.5 ? 0 - kFactors[axis] : kFactors[axis];
+            sum_ += static_cast<std::uint64_t>(static_cast<std::int64_t>(low)) * kFactors[axis];
+            beside_[axis] = at - low < 0.5 ? 0 - kFactors[axis] : kFactors[axis];
         }
     }
 
-    std::uint32_t key() const { return key_of(sum); }
+    std::uint32_t key() const { return key_of(sum_); }
 
     /// Of the seven cells whose borders are nearest: `corner` 1 to 7, a bit for each axis.
     std::uint32_t key_beside(unsigned corner) const {
-        std::uint64_t there = sum;
+        std::uint64_t there = sum_;
         for (std::size_t axis = 0; axis < 3; ++axis)
-            if ((corner >> axis & 1U) != 0) there += beside[axis];
+            if ((corner >> axis & 1U) != 0) there += beside_[axis];
         return key_of(there);
     }
 
@@ -62,8 +63,8 @@ private:
         return static_cast<std::uint32_t>(mixed(sum, 0) >> 32U);
     }
 
-    std::uint64_t sum = 0;
-    std::array<std::uint64_t, 3> beside{};
+    std::uint64_t sum_ = 0;
+    std::array<std::uint64_t, 3> beside_{};
 };
 
 /// Votes by cell: a hash table with open addresses. Most cells beside a cell are empty, which a small set of
@@ -256,7 +257,11 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, const PointP
     Count count(cloud, type, pairs);
     std::vector<Hypothesis> out;  // the widest cells first, and last turned round
     const double finest = 8 * cloud.scene().resolution;
-    for (double size = 2 * reach; size > finest; size /= 8) count.fullest(size, most, out);
+    double size = 2 * reach;
+    while (size > finest) {
+        count.fullest(size, most, out);
+        size /= 8;
+    }
     count.fullest(finest, most, out);
     std::reverse(out.begin(), out.end());
     return out;
