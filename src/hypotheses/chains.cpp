@@ -250,8 +250,6 @@ public:
     }
 
 private:
-    const Vector3d& at(int i) const { return cloud_[group_[static_cast<std::size_t>(i)]]; }
-
     /// Half of them near A, as what turns about an axis there is often together, half anywhere.
     int pick(int a, int mate, int k, int picks) const {
         if (k < picks / 2) return distances_.nearest_first(a)[static_cast<std::size_t>(k)];

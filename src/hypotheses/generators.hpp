@@ -57,8 +57,8 @@ std::vector<Candidate> half_turns(const GroupDistances& group, double reach, dou
 
 /// Rotations from three points A, B, C with |AB| = |BC|, one of whose neighbours on the ring is there; every
 /// other kind from four with |AB| = |BC| = |CD| and |AC| = |BD|. The `most` that chance explains least, best
-/// first. Of a large group `reach` is lowered until chance gives about 60,000 `effort` of three and 10,000 of
-/// four.
+/// first. Of a large group `reach` is lowered until chance gives about 60,000 of three and 10,000 of four,
+/// each times `effort`.
 std::vector<Candidate> chains(const GroupDistances& group, double reach, double effort, std::size_t most);
 
 struct Agreed {

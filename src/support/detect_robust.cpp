@@ -78,17 +78,17 @@ private:
     /// Hypotheses from pairs and chains of `points` to a tolerance. `looks`: of all points, at pairs of
     /// pairs.
     void look_at(const SearchGroup& points, double reach, double looks) {
-        const std::size_t n = points.size();
+        const auto n = static_cast<double>(points.size());
         // Fewer points, fewer hypotheses.
-        const double share = static_cast<double>(n) / cloud_.size();
+        const double share = n / cloud_.size();
         const auto of_share = [&](double most) { return static_cast<std::size_t>(share * share * most); };
         // In looks at a point: many are needed where noise hides which are meant.
         const auto looked = [&](double all) { return 100 + all / cloud_.size(); };
-        const double m = static_cast<double>(n);
-        const auto voted = of_share(budget(600) + std::min(m / 4, 500.0));
+        const auto voted = of_share(budget(600) + std::min(n / 4, 500.0));
         const Groups groups(cloud_, points, !all_pairs_vote(points), reach,
-                            {of_share(looked(3e5) + m / 4), of_share(looked(1e5) + m / 8),
-                             of_share(budget(200) + m / 8), share * looks, share * share * share});
+                            {of_share(looked(3e5) + n / 4), of_share(looked(1e5) + n / 8),
+                             of_share(budget(200) + n / 8), share * looks, share * share * share});
+        monitor_.begin_stage("votes of pairs", types_voted().size());
         // None of them needs to know what another finds.
         std::vector<std::vector<Hypothesis>> votes;
         std::vector<Suggestions> first;
@@ -98,7 +98,6 @@ private:
             else
                 first = suggestions_from(groups, 0);
         });
-        monitor_.begin_stage("votes of pairs", votes.size());
         for (const std::vector<Hypothesis>& v : votes) {
             offer(v, voted);
             monitor_.advance();

@@ -11,7 +11,6 @@ namespace {
 constexpr int kFew = 100;                      // points, all of which cost little
 constexpr double kExact = 8;                   // resolutions
 constexpr double kSure = -10;                  // significance
-constexpr std::size_t kMost = 100;             // supports
 constexpr std::size_t kLeast = 2, kShare = 4;  // of an orbit stay
 
 /// Points that the exact supports carry into one another.
@@ -50,9 +49,13 @@ void outer_first(const Cloud& cloud, SearchGroup& orbit) {
 
 SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports) {
     SearchGroup out;
+    if (cloud.size() <= kFew) {
+        out.resize(static_cast<std::size_t>(cloud.size()));
+        std::iota(out.begin(), out.end(), 0);
+        return out;
+    }
     for (SearchGroup& orbit : exact_orbits(cloud, supports)) {
-        const std::size_t stay =
-            cloud.size() <= kFew ? orbit.size() : std::max(kLeast, orbit.size() / kShare);
+        const std::size_t stay = std::max(kLeast, orbit.size() / kShare);
         if (stay < orbit.size()) {
             outer_first(cloud, orbit);
             orbit.resize(stay);

@@ -11,7 +11,7 @@ namespace insym {
 
 /// All points but, of those that the exact ones of `supports` carry into one another, three quarters:
 /// the outer ones of such an orbit stay, as its image under any other symmetry has them at its ends, too. Of
-/// a few points all. Ascending. O(n log n).
+/// a few points all. Ascending. O(n log n + links).
 SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports);
 
 }  // namespace insym

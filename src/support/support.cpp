@@ -346,9 +346,10 @@ bool Gatherer::promising(const Hypothesis& h, double reach) const {
     return near || sampled(h, h.map, reach) > 0;
 }
 
-/// A hypothesis from near points is inaccurate far away: refit it on twice as far a neighbourhood at a time.
-/// In a large set most end within one: where a neighbourhood has no more links than its half, nor a sample of
-/// all points, but by chance, nothing farther off is looked at.
+/// A hypothesis from near points is inaccurate far away: refit it on a wider neighbourhood at a time, twice
+/// as wide or, where it is met well, up to eight times.
+/// In a large set most end within one: where a neighbourhood has no more links than the one before, nor a
+/// sample of all points, but by chance, nothing farther off is looked at.
 Gatherer::Region Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map, Linked& linked) const {
     constexpr int kFew = 300;  // to look at so many is cheap
     constexpr double kSure = 4;

@@ -180,6 +180,34 @@ std::vector<LocalPattern> local_patterns(PointSet& set, std::uint64_t seed) {
 }  // namespace
 
 // Oracle: what was planted; and the same bits for any number of threads.
+// Each row is exact, its relation to the other is not: what stands for the rows must still show it.
+TEST(RobustLocal, ARoughMirrorOfExactRowsIsFound) {
+    constexpr int kCopies = 12, kPattern = 12;
+    constexpr double kRough = 2e-3;
+    std::mt19937_64 random(9);
+    PointSet points;
+    points.dimension = 3;
+    for (int i = 0; i < kPattern; ++i) {
+        const double x = uniform(random, 0, 1), y = uniform(random, 1, 4), z = uniform(random, 0, 1);
+        const double a = uniform(random, -kRough, kRough), b = uniform(random, -kRough, kRough);
+        for (int copy = 0; copy < kCopies; ++copy) {
+            points.positions.push_back({x + copy, y, z});
+            points.positions.push_back({x + copy, -y + a, z + b});
+        }
+    }
+    const DetectResult result = robust(points);
+    const auto is_rough_mirror = [&](const Symmetry& s) {
+        return s.type == SymmetryType::mirror && s.deviation.max > kRough / 10 && s.coverage > 0.9 &&
+               s.isometry.plane && std::abs(s.isometry.plane->normal[1]) > 0.999;
+    };
+    EXPECT_TRUE(std::any_of(result.symmetries.begin(), result.symmetries.end(), is_rough_mirror));
+    const auto is_row = [](const Symmetry& s) {
+        return s.type == SymmetryType::translation && s.deviation.max < 1e-9 && s.coverage > 0.9 &&
+               std::abs(s.isometry.step - 1) < 1e-9;
+    };
+    EXPECT_TRUE(std::any_of(result.symmetries.begin(), result.symmetries.end(), is_row));
+}
+
 TEST(RobustLocal, PatternsOfALargeSetAreFoundWhole) {
     PointSet set;
     const std::vector<LocalPattern> patterns = local_patterns(set, 7);
