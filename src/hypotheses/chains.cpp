@@ -109,8 +109,14 @@ bool ring_map(const Vector3d& a, const Vector3d& b, const Vector3d& c, RigidMap&
 
 class ChainSearch {
 public:
-    ChainSearch(const GroupDistances& group, double reach, double effort, std::size_t most)
-        : cloud_(group.cloud), group_(group.group), distances_(group.distances), reach_(reach), best_(most) {
+    ChainSearch(const GroupDistances& group, const Focus& focus, double reach, double effort,
+                std::size_t most)
+        : cloud_(group.cloud),
+          group_(group.group),
+          distances_(group.distances),
+          focus_(focus),
+          reach_(reach),
+          best_(most) {
         const double n = distances_.size(), diameter = cloud_.scene().diameter;
         three_ = affordable(1.5 * n * n * n / diameter, 6e4 * effort, 1, reach);
         four_ = affordable(27 * n * n * n * n / std::pow(diameter, 3), 1e4 * effort, 3, reach);
@@ -122,6 +128,7 @@ public:
         const int n = static_cast<int>(group_.size());
         const double slack = std::max(three_, four_);
         for (int b = 0; b < n; ++b) {
+            if (!of_focus(b)) continue;
             const auto order = distances_.nearest_first(b);
             for (std::size_t i = 0; i < order.size(); ++i)
                 for (std::size_t j = i + 1; j < order.size(); ++j) {
@@ -135,6 +142,7 @@ public:
 
 private:
     const Vector3d& at(int i) const { return cloud_[group_[static_cast<std::size_t>(i)]]; }
+    bool of_focus(int i) const { return in(focus_, group_[static_cast<std::size_t>(i)]); }
 
     void triple(int a, int b, int c) {
         const double step = distances_(a, b);
@@ -143,12 +151,14 @@ private:
         const double across = distances_(a, c);
         // A straight row is a translation's.
         if (across > 2 * step * (1 - 1e-4)) return;
-        for (const auto& [x, y] : {std::pair(a, c), std::pair(c, a)})
+        for (const auto& [x, y] : {std::pair(a, c), std::pair(c, a)}) {
+            const bool twice = of_focus(y);  // a chain is met from both of its inner points
             distances_.visit_shell(y, step - four_, step + four_, [&, x = x, y = y](int d, double) {
-                if (d != b && d != x && std::abs(distances_(b, d) - across) <= four_ && x < d)
+                if (d != b && d != x && std::abs(distances_(b, d) - across) <= four_ && (x < d || !twice))
                     four(x, b, y, d);
                 return true;
             });
+        }
     }
 
     void ring(int a, int b, int c) {
@@ -209,6 +219,7 @@ private:
     const Cloud& cloud_;
     const SearchGroup& group_;
     const Distances& distances_;
+    const Focus& focus_;
     double reach_;
     double three_ = 0;
     double four_ = 0;
@@ -228,8 +239,8 @@ Vector3d half_turn_axis(const Cloud& cloud, const std::array<int, 4>& points) {
 /// Half-turns as pairs of pairs. A's mates are all points; B is one of a sample.
 class HalfTurnSearch {
 public:
-    HalfTurnSearch(const GroupDistances& group, double reach, std::size_t most)
-        : cloud_(group.cloud), group_(group.group), distances_(group.distances), best_(most) {
+    HalfTurnSearch(const GroupDistances& group, const Focus& focus, double reach, std::size_t most)
+        : cloud_(group.cloud), group_(group.group), distances_(group.distances), focus_(focus), best_(most) {
         const double n = distances_.size();
         slack_ = affordable(9 * n * n * n * n / 8 / std::pow(cloud_.scene().diameter, 2), 1e4, 2, reach);
         slack_ = std::max(slack_, 2 * cloud_.scene().resolution);
@@ -241,15 +252,19 @@ public:
         all_ = picks == n;
         // What is looked up at random is of the mate.
         for (int mate = 1; mate < n; ++mate)
-            for (int a = 0; a < mate; ++a)
+            for (int a = 0; a < mate; ++a) {
+                if (!of_focus(a) && !of_focus(mate)) continue;
                 for (int k = 0; k < picks; ++k) {
                     const int b = all_ ? k : pick(a, mate, k, picks);
                     if (b != a && b != mate) partner(a, mate, b);
                 }
+            }
         return best_.sorted();
     }
 
 private:
+    bool of_focus(int i) const { return in(focus_, group_[static_cast<std::size_t>(i)]); }
+
     /// Half of them near A, as what turns about an axis there is often together, half anywhere.
     int pick(int a, int mate, int k, int picks) const {
         if (k < picks / 2) return distances_.nearest_first(a)[static_cast<std::size_t>(k)];
@@ -280,6 +295,7 @@ private:
     const Cloud& cloud_;
     const SearchGroup& group_;
     const Distances& distances_;
+    const Focus& focus_;
     bool all_ = true;  // points are B in turn
     double slack_ = 0;
     BestCandidates best_;
@@ -305,14 +321,16 @@ Hypothesis half_turn_of(const Cloud& cloud, const std::array<int, 4>& points) {
 GroupDistances::GroupDistances(const Cloud& of, const SearchGroup& points)
     : cloud(of), group(points), distances(positions(of, points)) {}
 
-std::vector<Candidate> chains(const GroupDistances& group, double reach, double effort, std::size_t most) {
+std::vector<Candidate> chains(const GroupDistances& group, const Focus& focus, double reach, double effort,
+                              std::size_t most) {
     if (group.group.size() < 3) return {};
-    return ChainSearch(group, reach, effort, most).run();
+    return ChainSearch(group, focus, reach, effort, most).run();
 }
 
-std::vector<Candidate> half_turns(const GroupDistances& group, double reach, double looks, std::size_t most) {
+std::vector<Candidate> half_turns(const GroupDistances& group, const Focus& focus, double reach, double looks,
+                                  std::size_t most) {
     if (group.group.size() < 4 || group.cloud.dimension() == 2) return {};
-    return HalfTurnSearch(group, reach, most).run(looks);
+    return HalfTurnSearch(group, focus, reach, most).run(looks);
 }
 
 double disagreement(const Cloud& cloud, const Candidate& candidate) {

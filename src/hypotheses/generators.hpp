@@ -25,8 +25,15 @@ std::vector<SearchGroup> search_groups(const Cloud& cloud, const SearchGroup& po
 using PointPairs = std::vector<std::pair<int, int>>;
 PointPairs spread_pairs(const Cloud& cloud, const SearchGroup& points, std::size_t most);
 
-/// All pairs of a group.
-PointPairs pairs_within(const SearchGroup& group);
+/// Of each point, whether it is one of those that a suggestion must rest on. Empty: it may rest on any.
+using Focus = std::vector<char>;
+
+inline bool in(const Focus& focus, int point) {
+    return focus.empty() || focus[static_cast<std::size_t>(point)] != 0;
+}
+
+/// All pairs of a group with a point of the focus.
+PointPairs pairs_within(const SearchGroup& group, const Focus& focus);
 
 /// Translations, inversions (half-turns in the plane) and mirrors: each pair is a vote for one of each. Votes
 /// are counted in cells of several sizes up to `reach`; the fullest `most` cells of each size come back,
@@ -52,14 +59,17 @@ struct Candidate {
 };
 
 /// Half-turns from two pairs A, A' and B, B' with |AB| = |A'B'| and |AB'| = |A'B|. The `most` that agree
-/// best, best first. About `looks` pairs of pairs are looked at, and at least four for each pair.
-std::vector<Candidate> half_turns(const GroupDistances& group, double reach, double looks, std::size_t most);
+/// best, best first. The first pair has a point of the focus. About `looks` pairs of pairs are looked at, and
+/// at least four for each pair.
+std::vector<Candidate> half_turns(const GroupDistances& group, const Focus& focus, double reach, double looks,
+                                  std::size_t most);
 
 /// Rotations from three points A, B, C with |AB| = |BC|, one of whose neighbours on the ring is there; every
 /// other kind from four with |AB| = |BC| = |CD| and |AC| = |BD|. The `most` that chance explains least, best
 /// first. Of a large group `reach` is lowered until chance gives about 60,000 of three and 10,000 of four,
-/// each times `effort`.
-std::vector<Candidate> chains(const GroupDistances& group, double reach, double effort, std::size_t most);
+/// each times `effort`. B, or C of four, is of the focus.
+std::vector<Candidate> chains(const GroupDistances& group, const Focus& focus, double reach, double effort,
+                              std::size_t most);
 
 struct Agreed {
     std::vector<Candidate> candidates;

@@ -129,8 +129,9 @@ public:
     }
 
     /// The fullest cells of this size, the fullest last. What was alone in a wider cell is not asked again.
-    void fullest(double size, std::size_t most, std::vector<Hypothesis>& out) {
-        std::vector<Ranked> ranked = count(size);
+    /// `joined`: with the cells beside, as what votes for the same may stand on either side of a border.
+    void fullest(double size, bool joined, std::size_t most, std::vector<Hypothesis>& out) {
+        std::vector<Ranked> ranked = joined ? count_joined(size) : count(size);
         if (ranked.size() > most) {
             std::nth_element(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(most),
                              ranked.end());
@@ -148,11 +149,41 @@ private:
         bool operator<(const Ranked& o) const { return votes != o.votes ? votes > o.votes : first < o.first; }
     };
 
+    std::vector<std::uint32_t> keys(double size) const {
+        std::vector<std::uint32_t> out;
+        out.reserve(alive_.size());
+        for (const int b : alive_) out.push_back(Cell(place(b), size).key());
+        return out;
+    }
+
+    /// Most cells hold too few votes, which a small table of counts tells.
     std::vector<Ranked> count(double size) {
+        const std::vector<std::uint32_t> all = keys(size);
+        std::size_t places = 16;
+        while (places < 4 * all.size()) places *= 2;
+        std::vector<std::uint8_t> votes(places, 0);
+        for (const std::uint32_t key : all) {
+            std::uint8_t& v = votes[key & (places - 1)];
+            v = static_cast<std::uint8_t>(std::min(v + 1, kFewVotes));
+        }
+        std::vector<std::pair<std::uint32_t, int>> left;  // cell and ballot
+        for (std::size_t k = 0; k < all.size(); ++k)
+            if (votes[all[k] & (places - 1)] >= kFewVotes) left.emplace_back(all[k], alive_[k]);
+        Cells cells(left.size());
+        for (const auto& [key, ballot] : left) cells.add(key, ballot);
+        std::vector<Ranked> ranked;
+        alive_.clear();
+        for (const auto& [key, ballot] : left) {
+            alive_.push_back(ballot);
+            const Cells::Slot& own = cells.at(key);
+            if (own.first == ballot && own.count >= kFewVotes) ranked.push_back({own.count, ballot});
+        }
+        return ranked;
+    }
+
+    std::vector<Ranked> count_joined(double size) {
         Cells cells(alive_.size());
-        std::vector<std::uint32_t> keys;
-        keys.reserve(alive_.size());
-        for (const int b : alive_) keys.push_back(Cell(place(b), size).key());
+        const std::vector<std::uint32_t> keys = this->keys(size);
         constexpr std::size_t kAhead = 16;
         const auto expect = [&](std::size_t k) {
             if (k < keys.size()) cells.expect(keys[k]);
@@ -244,11 +275,12 @@ PointPairs spread_pairs(const Cloud& cloud, const SearchGroup& points, std::size
     return pairs;
 }
 
-PointPairs pairs_within(const SearchGroup& group) {
+PointPairs pairs_within(const SearchGroup& group, const Focus& focus) {
     PointPairs pairs;
     pairs.reserve(group.size() * group.size() / 2);
     for (std::size_t i = 0; i < group.size(); ++i)
-        for (std::size_t j = i + 1; j < group.size(); ++j) pairs.emplace_back(group[i], group[j]);
+        for (std::size_t j = i + 1; j < group.size(); ++j)
+            if (in(focus, group[i]) || in(focus, group[j])) pairs.emplace_back(group[i], group[j]);
     return pairs;
 }
 
@@ -259,10 +291,11 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, const PointP
     const double finest = 8 * cloud.scene().resolution;
     double size = 2 * reach;
     while (size > finest) {
-        count.fullest(size, most, out);
+        count.fullest(size, true, most, out);
         size /= 8;
     }
-    count.fullest(finest, most, out);
+    // What is exact is much smaller than a cell; what is not came up in wider ones.
+    count.fullest(finest, false, most, out);
     std::reverse(out.begin(), out.end());
     return out;
 }

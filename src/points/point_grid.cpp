@@ -19,7 +19,7 @@ PointGrid::PointGrid(const std::vector<Point>& positions, double cell) {
     for (std::size_t k = 0; k < 3; ++k) extent[k] = top_[k] - origin_[k];
     const double longest = *std::max_element(extent.begin(), extent.end());
 
-    // Start from the asked or a fine cell and coarsen until there are at most about 2n cells.
+    // Start from the asked or a fine cell and coarsen until there are at most about 16n cells.
     const auto n = static_cast<double>(positions.size());
     double size = cell > 0 ? cell : longest / std::max(1.0, n);
     const auto cells = [&](double s) {
@@ -28,7 +28,7 @@ PointGrid::PointGrid(const std::vector<Point>& positions, double cell) {
         return product;
     };
     if (!(size > 0)) size = 1;
-    while (cells(size) > 2 * n + 8) size *= 1.25;
+    while (cells(size) > 16 * n + 8) size *= 1.25;
     inverse_cell_ = 1 / size;
     for (std::size_t k = 0; k < 3; ++k)
         count_[k] = static_cast<std::int64_t>(std::floor(extent[k] / size)) + 1;

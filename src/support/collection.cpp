@@ -26,19 +26,18 @@ bool has_link(const Support& support, int from, int to) {
 
 bool Collection::explains(const Hypothesis& h) const {
     if (h.from[0] < 0) return false;
-    const auto found = by_link_.find(key(h.from[0], h.to[0]));
-    if (found == by_link_.end()) return false;
-    for (const int id : found->second) {
+    bool explained = false;
+    by_link_.visit(h.from[0], h.to[0], [&](int id) {
         const Support& s = supports_[static_cast<std::size_t>(id)];
-        if (!may_be(h.type, s.type)) continue;
+        if (explained || !may_be(h.type, s.type)) return;
         bool forward = true, backward = true;
         for (std::size_t k = 0; k < h.from.size() && h.from[k] >= 0; ++k) {
             forward = forward && has_link(s, h.from[k], h.to[k]);
             backward = backward && has_link(s, h.to[k], h.from[k]);
         }
-        if (forward || backward) return true;
-    }
-    return false;
+        explained = forward || backward;
+    });
+    return explained;
 }
 
 bool Collection::knows(const RigidMap& map, double radius) const {
@@ -52,12 +51,10 @@ int Collection::same(const Support& support) const {
     const auto size = static_cast<double>(support.links.size());
     // How many of the links each support shares, in either direction.
     std::vector<int> shared(supports_.size(), 0), met;
-    for (const auto& [from, to] : support.links) {
-        const auto found = by_link_.find(key(from, to));
-        if (found == by_link_.end()) continue;
-        for (const int id : found->second)
+    for (const auto& [from, to] : support.links)
+        by_link_.visit(from, to, [&](int id) {
             if (shared[static_cast<std::size_t>(id)]++ == 0) met.push_back(id);
-    }
+        });
     int first = -1;
     for (const int id : met) {
         if (first >= 0 && id > first) continue;
@@ -79,10 +76,7 @@ int Collection::same(const Support& support) const {
 }
 
 void Collection::enter(int id) {
-    for (const auto& [from, to] : supports_[static_cast<std::size_t>(id)].links) {
-        std::vector<int>& ids = by_link_[key(from, to)];
-        if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
-    }
+    for (const auto& [from, to] : supports_[static_cast<std::size_t>(id)].links) by_link_.add(from, to, id);
 }
 
 bool Collection::add(Support support) {

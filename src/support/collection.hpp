@@ -1,10 +1,9 @@
 // The supports found so far, each isometry once.
 #pragma once
 
-#include <cstdint>
-#include <unordered_map>
 #include <vector>
 
+#include "support/link_index.hpp"
 #include "support/support.hpp"
 
 namespace insym {
@@ -26,15 +25,11 @@ public:
     const std::vector<Support>& supports() const { return supports_; }
 
 private:
-    static std::uint64_t key(int a, int b) {
-        if (a > b) std::swap(a, b);
-        return static_cast<std::uint64_t>(a) << 32U | static_cast<std::uint32_t>(b);
-    }
     int same(const Support& support) const;
     void enter(int id);
 
     std::vector<Support> supports_;
-    std::unordered_map<std::uint64_t, std::vector<int>> by_link_;
+    LinkIndex by_link_;
 };
 
 /// True if `support` carries `from` to `to`.

@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -51,11 +52,12 @@ public:
         SearchGroup points(static_cast<std::size_t>(cloud_.size()));
         std::iota(points.begin(), points.end(), 0);
         // What is exact first, which is found among few candidates; what is not, then among few points.
-        constexpr double kExact = 4;
+        constexpr double kExact = 4;  // resolutions
+        constexpr std::size_t kStay = 8;
         const double exact = kExact * cloud_.scene().resolution;
         if (exact < reach) {
             look_at(points, exact, 3e5);
-            points = representatives(cloud_, collection_.supports());
+            points = representatives(cloud_, collection_.supports(), kStay);
         }
         look_at(points, reach, 1e6);
         offer_roots();
@@ -87,22 +89,18 @@ private:
         const auto voted = of_share(budget(600) + std::min(n / 4, 500.0));
         const Groups groups(cloud_, points, !all_pairs_vote(points), reach,
                             {of_share(looked(3e5) + n / 4), of_share(looked(1e5) + n / 8),
-                             of_share(budget(200) + n / 8), share * looks, share * share * share});
-        monitor_.begin_stage("votes of pairs", types_voted().size());
-        // None of them needs to know what another finds.
-        std::vector<std::vector<Hypothesis>> votes;
-        std::vector<Suggestions> first;
-        parallel_for(2, [&](int k) {
-            if (k == 0)
-                votes = votes_of(points, reach, voted / 2);
-            else
-                first = suggestions_from(groups, 0);
-        });
-        for (const std::vector<Hypothesis>& v : votes) {
-            offer(v, voted);
-            monitor_.advance();
-        }
-        offer_groups(groups, std::move(first));
+                             of_share(budget(200) + n / 8), share * share * looks, share * share * share});
+        monitor_.begin_stage("votes of pairs", 1);
+        const std::vector<std::vector<Hypothesis>> votes = votes_of(points, reach, voted / 2);
+        std::vector<Source> sources;
+        for (const std::vector<Hypothesis>& v : votes) sources.push_back(source(v, voted));
+        offer(std::move(sources));
+        // Points that are exactly alike suggest alike.
+        constexpr std::size_t kFocus = 16;
+        Focus focus(static_cast<std::size_t>(cloud_.size()), 0);
+        for (const int i : representatives(cloud_, collection_.supports(), kFocus))
+            focus[static_cast<std::size_t>(i)] = 1;
+        offer_groups(groups, focus);
     }
 
     /// Half-turns in the plane are inversions there.
@@ -174,13 +172,14 @@ private:
     /// So many groups at a time.
     static constexpr std::size_t kAtATime = 16;
 
-    std::vector<Suggestions> suggestions_from(const Groups& groups, std::size_t first) const {
+    std::vector<Suggestions> suggestions_from(const Groups& groups, const Focus& focus,
+                                              std::size_t first) const {
         std::vector<Suggestions> found(std::min(kAtATime, groups.groups.size() - first));
-        parallel_for(found.size(), [&](std::size_t k) { found[k] = suggestions(groups, first + k); });
+        parallel_for(found.size(), [&](std::size_t k) { found[k] = suggestions(groups, focus, first + k); });
         return found;
     }
 
-    Suggestions suggestions(const Groups& groups, std::size_t k) const {
+    Suggestions suggestions(const Groups& groups, const Focus& focus, std::size_t k) const {
         // So many candidates are kept for each that is tried: most of them say the same, or what was found.
         constexpr std::size_t kSpare = 20, kLeast = 20000;  // to keep some costs little
         const auto kept = [&](std::size_t tried) { return std::max(kLeast, kSpare * tried); };
@@ -190,14 +189,14 @@ private:
         const GroupDistances known(cloud_, groups.groups[k]);
         parallel_for(2, [&](int half) {
             if (half == 0)
-                out.chains =
-                    agreeing_first(cloud_, chains(known, groups.reach, budget.effort, kept(budget.chains)));
+                out.chains = agreeing_first(
+                    cloud_, chains(known, focus, groups.reach, budget.effort, kept(budget.chains)));
             else
                 out.half_turns = agreeing_first(
-                    cloud_, half_turns(known, groups.reach, budget.looks, kept(budget.half_turns)));
+                    cloud_, half_turns(known, focus, groups.reach, budget.looks, kept(budget.half_turns)));
         });
         if (!groups.with_votes) return out;
-        const PointPairs pairs = pairs_within(groups.groups[k]);
+        const PointPairs pairs = pairs_within(groups.groups[k], focus);
         for (const SymmetryType type : types_voted())
             out.voted.push_back(vote(cloud_, type, pairs, groups.reach, budget.votes));
         return out;
@@ -209,45 +208,68 @@ private:
         return found.agreeing < kSome ? most : std::min(most / 4, found.agreeing + most / 32);
     }
 
-    /// A few groups at a time; `found`: what the first suggest.
-    void offer_groups(const Groups& groups, std::vector<Suggestions> found) {
+    /// A few groups at a time.
+    void offer_groups(const Groups& groups, const Focus& focus) {
         monitor_.begin_stage("chains of points", groups.groups.size());
-        for (std::size_t first = 0; !found.empty() && !monitor_.should_stop();) {
+        for (std::size_t first = 0; first < groups.groups.size() && !monitor_.should_stop();) {
+            const std::vector<Suggestions> found = suggestions_from(groups, focus, first);
+            std::vector<Source> sources;
             for (std::size_t k = 0; k < found.size(); ++k) {
                 const GroupBudget most = groups.budget_of(first + k);
-                for (const std::vector<Hypothesis>& v : found[k].voted) offer(v, most.votes);
-                offer(found[k].chains.candidates, tries(found[k].chains, most.chains));
-                offer(found[k].half_turns.candidates, tries(found[k].half_turns, most.half_turns));
+                for (const std::vector<Hypothesis>& v : found[k].voted)
+                    sources.push_back(source(v, most.votes));
+                sources.push_back(source(found[k].chains, most.chains));
+                sources.push_back(source(found[k].half_turns, most.half_turns));
                 monitor_.advance();
             }
+            offer(std::move(sources));
             first += found.size();
-            found = suggestions_from(groups, first);
         }
     }
 
-    const Hypothesis& hypothesis(const Hypothesis& h) const { return h; }
-    Hypothesis hypothesis(const Candidate& c) const { return hypothesis_of(cloud_, c); }
+    /// Hypotheses in their order, of which so many are tried.
+    struct Source {
+        std::function<Hypothesis(std::size_t)> at;
+        std::size_t size = 0, most = 0;
+        std::size_t next = 0, tried = 0;
 
-    /// Tries hypotheses in their order, in blocks, so that what one finds spares the next ones the work; the
-    /// blocks do not depend on the threads.
-    template <class Suggestion>
-    void offer(const std::vector<Suggestion>& suggestions, std::size_t most = 1000000) {
+        bool ended() const { return next == size || tried >= most; }
+    };
+
+    static Source source(const std::vector<Hypothesis>& hypotheses, std::size_t most) {
+        return {[&hypotheses](std::size_t k) { return hypotheses[k]; }, hypotheses.size(), most};
+    }
+    Source source(const Agreed& found, std::size_t most) const {
+        return {[this, &found](std::size_t k) { return hypothesis_of(cloud_, found.candidates[k]); },
+                found.candidates.size(), tries(found, most)};
+    }
+    void offer(const std::vector<Hypothesis>& hypotheses) { offer({source(hypotheses, hypotheses.size())}); }
+
+    /// Tries hypotheses, of all sources by turns, in blocks, so that what one finds spares the next ones the work;
+    /// the blocks do not depend on the threads.
+    void offer(std::vector<Source> sources) {
         constexpr std::size_t kBlock = 64;
-        const std::size_t stop = tried_ + most;
-        std::vector<std::optional<Support>> found(kBlock);
         std::vector<Hypothesis> block;
-        for (std::size_t k = 0; k < suggestions.size() && tried_ < stop && !monitor_.should_stop();) {
+        std::vector<std::optional<Support>> found;
+        while (!monitor_.should_stop()) {
+            std::erase_if(sources, [](const Source& s) { return s.ended(); });
+            if (sources.empty()) return;
+            const std::size_t share = std::max<std::size_t>(1, kBlock / sources.size());
             block.clear();
-            for (; k < suggestions.size() && block.size() < std::min(kBlock, stop - tried_); ++k) {
-                Hypothesis h = hypothesis(suggestions[k]);
-                if (!collection_.explains(h)) block.push_back(std::move(h));
-            }
+            for (Source& s : sources)
+                for (const std::size_t stop = s.tried + share; s.tried < stop && !s.ended(); ++s.next) {
+                    Hypothesis h = s.at(s.next);
+                    if (collection_.explains(h)) continue;
+                    block.push_back(std::move(h));
+                    ++s.tried;
+                }
             tried_ += block.size();
+            found.assign(block.size(), std::nullopt);
             parallel_for(block.size(), [&](std::size_t i) {
-                found[i] = monitor_.should_stop() ? std::nullopt : gatherer_.gather(block[i], kKept);
+                if (!monitor_.should_stop()) found[i] = gatherer_.gather(block[i], kKept);
             });
-            for (std::size_t i = 0; i < block.size(); ++i)
-                if (found[i]) collection_.add(std::move(*found[i]));
+            for (std::optional<Support>& f : found)
+                if (f) collection_.add(std::move(*f));
         }
     }
 
@@ -327,7 +349,7 @@ private:
     /// Products of the symmetries of the whole set, until there are no more: they form a group.
     void close_products() {
         constexpr std::size_t kMostElements = 130;
-        std::size_t done = 0;
+        std::size_t done = 0, multiplied = 0;
         std::vector<std::size_t> whole;
         for (int round = 0; round < 4 && !monitor_.should_stop(); ++round) {
             const std::vector<Support>& all = collection_.supports();
@@ -339,17 +361,53 @@ private:
                 if (in_group[k] != 0) whole.push_back(done + k);
             done = before;
             if (whole.size() > kMostElements) break;
-            std::vector<Hypothesis> products;
-            for (const std::size_t a : whole)
-                for (const std::size_t b : whole) {
-                    Hypothesis h = product(all[a], all[b]);
-                    if ((h.map.linear - Eigen::Matrix3d::Identity()).norm() >= 1e-3 &&
-                        !collection_.knows(h.map, cloud_.radius()))
-                        products.push_back(std::move(h));
-                }
-            offer(products);
+            offer(unknown_products(whole, multiplied));
+            multiplied = whole.size();
             if (all.size() == before) break;
         }
+    }
+
+    /// Products of two of `whole`, one of them not among the first `multiplied`: each once, and none that
+    /// could be no part of a finite group, nor of one of the set.
+    std::vector<Hypothesis> unknown_products(const std::vector<std::size_t>& whole,
+                                             std::size_t multiplied) const {
+        const std::vector<Support>& all = collection_.supports();
+        std::vector<Hypothesis> products;
+        const auto is_new = [&](const Hypothesis& h) {
+            return !collection_.knows(h.map, cloud_.radius()) &&
+                   std::none_of(products.begin(), products.end(), [&](const Hypothesis& other) {
+                       return (h.map.linear - other.map.linear).norm() * cloud_.radius() +
+                                  (h.map.shift - other.map.shift).norm() <=
+                              cloud_.scene().resolution;
+                   });
+        };
+        for (std::size_t a = 0; a < whole.size(); ++a)
+            for (std::size_t b = 0; b < whole.size(); ++b) {
+                if (std::max(a, b) < multiplied) continue;
+                Hypothesis h = product(all[whole[a]], all[whole[b]]);
+                if (leaves_a_point(h) && is_new(h)) products.push_back(std::move(h));
+            }
+        constexpr double kMany = 0.6;  // of the points
+        std::vector<char> many(products.size());
+        parallel_for(products.size(), [&](std::size_t k) {
+            const double reach = 4 * std::max(products[k].off, cloud_.scene().resolution);
+            many[k] = gatherer_.share_carried(products[k].map, reach) >= kMany ? 1 : 0;
+        });
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < products.size(); ++k)
+            if (many[k] != 0) products[kept++] = products[k];
+        products.resize(kept);
+        return products;
+    }
+
+    /// Some point stays where it is: neither a translation nor a screw nor a glide.
+    bool leaves_a_point(const Hypothesis& h) const {
+        constexpr double kTurns = 1e-3;
+        const bool improper = h.map.linear.determinant() < 0;
+        const Motion motion = motion_of(h.map, improper);
+        const bool steps = motion.step > 4 * std::max(h.off, cloud_.scene().resolution);
+        if (improper) return motion.angle > kTurns || !steps;
+        return motion.angle > kTurns && !steps;
     }
 
     /// Once the time is up only the best are laid out.

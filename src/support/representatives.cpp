@@ -8,10 +8,10 @@
 namespace insym {
 namespace {
 
-constexpr int kFew = 100;                      // points, all of which cost little
-constexpr double kExact = 8;                   // resolutions
-constexpr double kSure = -10;                  // significance
-constexpr std::size_t kLeast = 2, kShare = 4;  // of an orbit stay
+constexpr int kFew = 100;          // points, all of which cost little
+constexpr double kExact = 8;       // resolutions
+constexpr double kSure = -10;      // significance
+constexpr std::size_t kLeast = 2;  // of an orbit stay
 
 /// Points that the exact supports carry into one another.
 std::vector<SearchGroup> exact_orbits(const Cloud& cloud, const std::vector<Support>& supports) {
@@ -47,7 +47,7 @@ void outer_first(const Cloud& cloud, SearchGroup& orbit) {
 
 }  // namespace
 
-SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports) {
+SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports, std::size_t share) {
     SearchGroup out;
     if (cloud.size() <= kFew) {
         out.resize(static_cast<std::size_t>(cloud.size()));
@@ -55,7 +55,7 @@ SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supp
         return out;
     }
     for (SearchGroup& orbit : exact_orbits(cloud, supports)) {
-        const std::size_t stay = std::max(kLeast, orbit.size() / kShare);
+        const std::size_t stay = std::max(kLeast, orbit.size() / share);
         if (stay < orbit.size()) {
             outer_first(cloud, orbit);
             orbit.resize(stay);

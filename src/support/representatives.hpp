@@ -9,9 +9,9 @@
 
 namespace insym {
 
-/// All points but, of those that the exact ones of `supports` carry into one another, three quarters:
-/// the outer ones of such an orbit stay, as its image under any other symmetry has them at its ends, too. Of
-/// a few points all. Ascending. O(n log n + links).
-SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports);
+/// All points but, of those that the exact ones of `supports` carry into one another, one of each `share`,
+/// and at least two: the outer ones of such an orbit stay, as its image under any other symmetry has them at
+/// its ends, too. Of a few points all. Ascending. O(n log n + links).
+SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports, std::size_t share);
 
 }  // namespace insym

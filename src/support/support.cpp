@@ -184,6 +184,17 @@ int Gatherer::carried(const Support& support, double reach) const {
     return count;
 }
 
+double Gatherer::share_carried(const RigidMap& map, double reach) const {
+    const int n = cloud_.size(), looks = std::min(n, kSample);
+    int count = 0;
+    for (int k = 0; k < looks; ++k) {
+        const auto i = static_cast<int>(std::int64_t{k} * n / looks);
+        double ignored = 0;
+        if (cloud_.nearest(map(cloud_[i]), cloud_.label(i), reach, ignored) >= 0) ++count;
+    }
+    return count / static_cast<double>(looks);
+}
+
 void Gatherer::link(SymmetryType type, const RigidMap& map, double reach, const Region& region,
                     Linked& out) const {
     out.clear();

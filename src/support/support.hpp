@@ -44,6 +44,9 @@ public:
     /// How many points a support carries, from or to, or leaves in place to within `reach`. O(n).
     int carried(const Support& support, double reach) const;
 
+    /// The share of the points, or of a sample of many, that `map` carries to points or leaves in place.
+    double share_carried(const RigidMap& map, double reach) const;
+
     const std::vector<double>& levels() const { return levels_; }
     double reach() const { return levels_.back(); }
 

@@ -64,17 +64,17 @@ TEST(Representatives, AQuarterOfEachOrbitAtItsEndsAndWhatIsOfNone) {
         // Three of twelve: both ends, and of the next two the first.
         if (copy <= 1 || copy >= kCopies - 1) expected.push_back(i);
     }
-    EXPECT_EQ(representatives(row.cloud, {row.translation}), expected);
+    EXPECT_EQ(representatives(row.cloud, {row.translation}, 4), expected);
 }
 
 TEST(Representatives, WhatIsNotExactOrNotSureStandsForNothing) {
     Row row;
     row.translation.tolerance = 1e-3;
-    EXPECT_EQ(representatives(row.cloud, {row.translation}), row.everything());
+    EXPECT_EQ(representatives(row.cloud, {row.translation}, 4), row.everything());
     row.translation.tolerance = 0;
     row.translation.significance = -1;
-    EXPECT_EQ(representatives(row.cloud, {row.translation}), row.everything());
-    EXPECT_EQ(representatives(row.cloud, {}), row.everything());
+    EXPECT_EQ(representatives(row.cloud, {row.translation}, 4), row.everything());
+    EXPECT_EQ(representatives(row.cloud, {}, 4), row.everything());
 }
 
 }  // namespace
