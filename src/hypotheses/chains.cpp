@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "hypotheses/generators.hpp"
+#include "parallel_for.hpp"
 
 namespace insym {
 
@@ -77,6 +78,20 @@ private:
     std::vector<Candidate> found_;
 };
 
+/// A search is made in so many parts at once, each with candidates of its own.
+constexpr int kParts = 4;
+
+/// What is best in all parts of a search that is begun as `search` each time and run by `run`.
+template <class Search, class Run>
+std::vector<Candidate> best_of_parts(const Search& search, std::size_t most, const Run& run) {
+    std::vector<Search> parts(kParts, search);
+    parallel_for(kParts, [&](int part) { run(parts[static_cast<std::size_t>(part)], part); });
+    BestCandidates best(most);
+    for (Search& part : parts)
+        for (const Candidate& c : part.best().sorted()) best.add(c);
+    return best.sorted();
+}
+
 /// A turn about the circle through three points.
 bool ring_through(const Vector3d& a, const Vector3d& b, const Vector3d& c, Vector3d& center, Vector3d& axis) {
     const Vector3d u = a - b, v = c - b;
@@ -124,10 +139,11 @@ public:
         four_ = std::max(four_, 2 * cloud_.scene().resolution);
     }
 
-    std::vector<Candidate> run() {
+    /// Every kParts-th point from `part` as B.
+    void run(int part) {
         const int n = static_cast<int>(group_.size());
         const double slack = std::max(three_, four_);
-        for (int b = 0; b < n; ++b) {
+        for (int b = part; b < n; b += kParts) {
             if (!of_focus(b)) continue;
             const auto order = distances_.nearest_first(b);
             for (std::size_t i = 0; i < order.size(); ++i)
@@ -137,8 +153,9 @@ public:
                     triple(order[i], b, order[j]);
                 }
         }
-        return best_.sorted();
     }
+
+    BestCandidates& best() { return best_; }
 
 private:
     const Vector3d& at(int i) const { return cloud_[group_[static_cast<std::size_t>(i)]]; }
@@ -246,12 +263,13 @@ public:
         slack_ = std::max(slack_, 2 * cloud_.scene().resolution);
     }
 
-    std::vector<Candidate> run(double looks) {
+    /// Every kParts-th point from `part` as A'.
+    void run(int part, double looks) {
         const int n = static_cast<int>(group_.size());
         const int picks = std::max(4, std::min(n, static_cast<int>(looks / n / n)));
         all_ = picks == n;
         // What is looked up at random is of the mate.
-        for (int mate = 1; mate < n; ++mate)
+        for (int mate = part; mate < n; mate += kParts)
             for (int a = 0; a < mate; ++a) {
                 if (!of_focus(a) && !of_focus(mate)) continue;
                 for (int k = 0; k < picks; ++k) {
@@ -259,8 +277,9 @@ public:
                     if (b != a && b != mate) partner(a, mate, b);
                 }
             }
-        return best_.sorted();
     }
+
+    BestCandidates& best() { return best_; }
 
 private:
     bool of_focus(int i) const { return in(focus_, group_[static_cast<std::size_t>(i)]); }
@@ -324,13 +343,15 @@ GroupDistances::GroupDistances(const Cloud& of, const SearchGroup& points)
 std::vector<Candidate> chains(const GroupDistances& group, const Focus& focus, double reach, double effort,
                               std::size_t most) {
     if (group.group.size() < 3) return {};
-    return ChainSearch(group, focus, reach, effort, most).run();
+    return best_of_parts(ChainSearch(group, focus, reach, effort, most), most,
+                         [](ChainSearch& search, int part) { search.run(part); });
 }
 
 std::vector<Candidate> half_turns(const GroupDistances& group, const Focus& focus, double reach, double looks,
                                   std::size_t most) {
     if (group.group.size() < 4 || group.cloud.dimension() == 2) return {};
-    return HalfTurnSearch(group, focus, reach, most).run(looks);
+    return best_of_parts(HalfTurnSearch(group, focus, reach, most), most,
+                         [&](HalfTurnSearch& search, int part) { search.run(part, looks); });
 }
 
 double disagreement(const Cloud& cloud, const Candidate& candidate) {

@@ -30,14 +30,14 @@ PointGrid::PointGrid(const std::vector<Point>& positions, double cell) {
     if (!(size > 0)) size = 1;
     while (cells(size) > 16 * n + 8) size *= 1.25;
     inverse_cell_ = 1 / size;
-    for (std::size_t k = 0; k < 3; ++k)
-        count_[k] = static_cast<std::int64_t>(std::floor(extent[k] / size)) + 1;
+    for (std::size_t k = 0; k < 3; ++k) count_[k] = static_cast<int>(std::floor(extent[k] / size)) + 1;
 
     std::vector<std::int64_t> home(positions.size());
-    start_.assign(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]) + 1, 0);
+    start_.assign(static_cast<std::size_t>(std::int64_t{count_[0]} * count_[1] * count_[2]) + 1, 0);
     for (std::size_t i = 0; i < positions.size(); ++i) {
         const Point& p = positions[i];
-        home[i] = (cell_of(p[0], 0) * count_[1] + cell_of(p[1], 1)) * count_[2] + cell_of(p[2], 2);
+        home[i] =
+            (std::int64_t{cell_of(p[0], 0)} * count_[1] + cell_of(p[1], 1)) * count_[2] + cell_of(p[2], 2);
         ++start_[static_cast<std::size_t>(home[i]) + 1];
     }
     for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];

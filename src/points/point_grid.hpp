@@ -22,8 +22,8 @@ public:
     /// stops as soon as visit returns false.
     template <class Visit>
     void visit_ball(const Point& p, double radius, Visit visit) const {
-        std::int64_t low[3];
-        std::int64_t high[3];
+        int low[3];
+        int high[3];
         for (std::size_t k = 0; k < 3; ++k) {
             // Written so that NaN leaves, too.
             if (!(p[k] + radius >= origin_[k] && p[k] - radius <= top_[k])) return;
@@ -31,9 +31,9 @@ public:
             high[k] = p[k] + radius >= top_[k] ? count_[k] - 1 : cell_of(p[k] + radius, k);
         }
         const double limit = radius * radius;
-        for (std::int64_t x = low[0]; x <= high[0]; ++x)
-            for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-                const std::int64_t row = (x * count_[1] + y) * count_[2];
+        for (int x = low[0]; x <= high[0]; ++x)
+            for (int y = low[1]; y <= high[1]; ++y) {
+                const std::int64_t row = (std::int64_t{x} * count_[1] + y) * count_[2];
                 const int end = start_[static_cast<std::size_t>(row + high[2] + 1)];
                 for (int s = start_[static_cast<std::size_t>(row + low[2])]; s < end; ++s) {
                     const Point& q = sorted_[static_cast<std::size_t>(s)];
@@ -55,15 +55,15 @@ public:
     }
 
 private:
-    std::int64_t cell_of(double x, std::size_t axis) const {
-        const auto c = static_cast<std::int64_t>((x - origin_[axis]) * inverse_cell_);
+    int cell_of(double x, std::size_t axis) const {
+        const auto c = static_cast<int>((x - origin_[axis]) * inverse_cell_);
         return c < count_[axis] ? c : count_[axis] - 1;
     }
 
     Point origin_{};
     Point top_{};
     double inverse_cell_ = 0;
-    std::int64_t count_[3] = {1, 1, 1};
+    int count_[3] = {1, 1, 1};
     std::vector<int> start_;     // of each cell in sorted_, and the end
     std::vector<int> index_;     // of the sorted points in the input
     std::vector<Point> sorted_;  // by cell

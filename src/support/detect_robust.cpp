@@ -86,7 +86,7 @@ private:
         const auto of_share = [&](double most) { return static_cast<std::size_t>(share * share * most); };
         // In looks at a point: many are needed where noise hides which are meant.
         const auto looked = [&](double all) { return 100 + all / cloud_.size(); };
-        const auto voted = of_share(budget(600) + std::min(n / 4, 500.0));
+        const auto voted = of_share(budget(600) + std::min(n / 8, 500.0));
         const Groups groups(cloud_, points, !all_pairs_vote(points), reach,
                             {of_share(looked(3e5) + n / 4), of_share(looked(1e5) + n / 8),
                              of_share(budget(200) + n / 8), share * share * looks, share * share * share});
@@ -245,8 +245,8 @@ private:
     }
     void offer(const std::vector<Hypothesis>& hypotheses) { offer({source(hypotheses, hypotheses.size())}); }
 
-    /// Tries hypotheses, of all sources by turns, in blocks, so that what one finds spares the next ones the work;
-    /// the blocks do not depend on the threads.
+    /// Tries hypotheses, of all sources by turns, in blocks, so that what one finds spares the next ones the
+    /// work; the blocks do not depend on the threads.
     void offer(std::vector<Source> sources) {
         constexpr std::size_t kBlock = 64;
         std::vector<Hypothesis> block;
@@ -327,10 +327,14 @@ private:
         }
     }
 
+    /// A look at a sample: of the points that a symmetry of nearly all carries.
+    static constexpr double kMany = 0.6;
+
     /// Of nearly the whole set, and such as some point can stay in place under: part of a finite group.
     bool of_group(const Support& s) const {
         return s.type != SymmetryType::translation && s.type != SymmetryType::screw &&
                s.type != SymmetryType::glide_reflection && s.significance < kListed &&
+               gatherer_.share_carried(s.map, 1.5 * s.tolerance) >= kMany &&
                5 * gatherer_.carried(s, 1.5 * s.tolerance) >= 4 * cloud_.size();
     }
 
@@ -387,7 +391,6 @@ private:
                 Hypothesis h = product(all[whole[a]], all[whole[b]]);
                 if (leaves_a_point(h) && is_new(h)) products.push_back(std::move(h));
             }
-        constexpr double kMany = 0.6;  // of the points
         std::vector<char> many(products.size());
         parallel_for(products.size(), [&](std::size_t k) {
             const double reach = 4 * std::max(products[k].off, cloud_.scene().resolution);
