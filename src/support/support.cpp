@@ -381,7 +381,7 @@ Gatherer::Region Gatherer::grow(const Hypothesis& h, double reach, RigidMap& map
         const Judged judged = judge(h.type, linked, reach);
         map = refit(h.type, links_within(linked, judged.tolerance), map);
         // What is off by a tenth of the reach here is so by two tenths at twice the distance.
-        wider = std::clamp(reach / (2 * judged.tolerance), 2.0, 8.0);
+        wider = std::clamp(reach / (2 * judged.tolerance), 2.0, 4.0);
     }
     return {};
 }
