@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <tuple>
@@ -111,28 +112,77 @@ SymmetryType central_type(int dimension) {
 class DistanceSteps {
 public:
     explicit DistanceSteps(const Scene& scene)
-        : steps_(std::clamp(static_cast<int>(scene.diameter / (2 * scene.max_tolerance)), 1, 8192)),
+        : n_(scene.size()),
+          steps_(std::clamp(static_cast<int>(scene.diameter / (2 * scene.max_tolerance)), 1, 8192)),
           scale_(steps_ / (scene.diameter * (1 + 1e-9))),
           words_((static_cast<std::size_t>(steps_) + 63) / 64),
-          bits_(static_cast<std::size_t>(scene.size()) * words_) {
+          bits_(static_cast<std::size_t>(scene.size()) * words_),
+          step_(static_cast<std::size_t>(scene.size()) * static_cast<std::size_t>(scene.size())) {
         const double reach = scene.max_tolerance * (1 + 1e-9);
         parallel_for(scene.size(), [&](int i) {
             std::uint64_t* own = bits_.data() + static_cast<std::size_t>(i) * words_;
-            for (const double d : scene.distances.row(i))
+            std::uint16_t* steps = step_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(n_);
+            for (const double d : scene.distances.row(i)) {
+                *steps++ = static_cast<std::uint16_t>(step(d));
                 for (int s = step(std::max(0.0, d - reach)); s <= step(d + reach); ++s)
                     own[s / 64] |= std::uint64_t{1} << (s % 64);
+            }
         });
     }
 
-    int step(double distance) const { return std::min(static_cast<int>(distance * scale_), steps_ - 1); }
+    /// Of point i, the step of each other point.
+    const std::uint16_t* row(int i) const {
+        return step_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(n_);
+    }
     const std::uint64_t* of(int i) const { return bits_.data() + static_cast<std::size_t>(i) * words_; }
-    static bool has(const std::uint64_t* bits, int step) { return (bits[step / 64] >> (step % 64) & 1) != 0; }
+    static bool has(const std::uint64_t* bits, unsigned step) {
+        return (bits[step / 64] >> (step % 64) & 1) != 0;
+    }
 
 private:
+    int step(double distance) const { return std::min(static_cast<int>(distance * scale_), steps_ - 1); }
+
+    int n_;
     int steps_;
     double scale_;
     std::size_t words_;
     std::vector<std::uint64_t> bits_;
+    std::vector<std::uint16_t> step_;
+};
+
+/// A set of places in the plane, hashed to bits: never denies that a place within `reach` of one of them, in
+/// both coordinates, is there.
+class PlaceBits {
+public:
+    explicit PlaceBits(double reach) : reach_(reach * (1 + 1e-9)), scale_(1 / (2 * reach_)) {}
+
+    void clear() { bits_.fill(0); }
+    /// Neither coordinate is below 0.
+    void add(double x, double y) {
+        // A cell is as wide as the reach both ways: the place's reaches into this one and the one before.
+        const std::uint32_t high = sum(cell(x + reach_), cell(y + reach_));
+        for (const std::uint32_t s : {high, high - kX, high - kY, high - kX - kY}) {
+            const std::uint32_t place = s >> (32 - kLog);
+            bits_[place / 64] |= std::uint64_t{1} << (place % 64);
+        }
+    }
+    bool may_have(double x, double y) const {
+        const std::uint32_t place = sum(cell(x), cell(y)) >> (32 - kLog);
+        return (bits_[place / 64] >> (place % 64) & 1) != 0;
+    }
+
+private:
+    static constexpr int kLog = 14;
+    static constexpr std::uint32_t kX = 0x9E3779B1U, kY = 0x85EBCA77U;
+
+    std::uint32_t cell(double at) const {
+        return static_cast<std::uint32_t>(static_cast<std::int64_t>(at * scale_));
+    }
+    static std::uint32_t sum(std::uint32_t x, std::uint32_t y) { return x * kX + y * kY; }
+
+    double reach_;
+    double scale_;
+    std::array<std::uint64_t, (std::size_t{1} << kLog) / 64> bits_{};
 };
 
 /// What the pairs with one first point gave.
@@ -183,12 +233,12 @@ private:
     // label: each pair is of one label, a symmetry is not.
     std::vector<int> later_;
     std::vector<double> later_a_;
-    std::vector<int> later_step_;
     std::vector<int> directory_;
     double directory_scale_ = 0;
 
-    std::vector<int> leaning_;  // places in later_ of the points at the first one's side
-    std::vector<int> between_;  // points at nearly equal distances from both
+    std::vector<int> possible_;  // points that may have an image, or be one
+    PlaceBits places_;           // their distances to the first and the second point
+    std::vector<int> between_;   // points at nearly equal distances from both
     bool between_known_ = false;
     std::vector<Match> matches_;
     std::vector<const Match*> usable_;
@@ -203,20 +253,18 @@ PairSearch::PairSearch(const Scene& scene, const PointGrid& grid, const Distance
       types_(types),
       out_(out),
       pair_{first, first},
-      a_(scene.distances.row(first)) {
+      a_(scene.distances.row(first)),
+      places_(scene.max_tolerance) {
     for (const int q : scene.distances.nearest_first(first))
         if (q > first) later_.push_back(q);
-    for (const int q : later_) {
-        later_a_.push_back(a_[index(q)]);
-        later_step_.push_back(steps.step(a_[index(q)]));
-    }
+    for (const int q : later_) later_a_.push_back(a_[index(q)]);
     const std::size_t size = later_.size() + 1;
     directory_scale_ = static_cast<double>(size) / (scene.diameter * (1 + 1e-9));
     directory_.assign(size + 1, static_cast<int>(later_.size()));
     for (std::size_t k = later_.size(); k-- > 0;)
         directory_[static_cast<std::size_t>(later_a_[k] * directory_scale_)] = static_cast<int>(k);
     for (std::size_t k = size; k-- > 0;) directory_[k] = std::min(directory_[k], directory_[k + 1]);
-    leaning_.resize(later_.size());
+    possible_.resize(later_.size());
 }
 
 void PairSearch::search(int second) {
@@ -237,23 +285,29 @@ void PairSearch::search(int second) {
 
 void PairSearch::collect_matches() {
     const double cap = scene_.max_tolerance;
-    // Of q and its image one leans to the first point: q. The image is as far from the first point as q is
-    // from the second, and the other way round. Stored without a branch, which would be a coin toss.
+    // The image is as far from the first point as q is from the second, and the other way round. Stored
+    // without a branch, which would be a coin toss.
     const std::uint64_t* from_first = steps_.of(pair_.first);
     const std::uint64_t* from_second = steps_.of(pair_.second);
-    std::size_t leaning = 0;
-    for (std::size_t k = 0; k < later_.size(); ++k) {
-        const double b = b_[index(later_[k])];
-        const bool leans = later_a_[k] - b <= cap;
+    const std::uint16_t* to_first = steps_.row(pair_.first);
+    const std::uint16_t* to_second = steps_.row(pair_.second);
+    std::size_t possible = 0;
+    for (int q = pair_.first + 1; q < scene_.size(); ++q) {
         const bool may_match =
-            DistanceSteps::has(from_first, steps_.step(b)) & DistanceSteps::has(from_second, later_step_[k]);
-        leaning_[leaning] = static_cast<int>(k);
-        leaning += leans & may_match ? 1 : 0;
+            DistanceSteps::has(from_first, to_second[q]) & DistanceSteps::has(from_second, to_first[q]);
+        possible_[possible] = q;
+        possible += may_match ? 1 : 0;
     }
-    for (std::size_t l = 0; l < leaning; ++l) {
-        const int q = later_[index(leaning_[l])];
+    // Of q and its image one leans to the first point: q; the other one to the second.
+    places_.clear();
+    for (std::size_t l = 0; l < possible; ++l) {
+        const double a = a_[index(possible_[l])], b = b_[index(possible_[l])];
+        if (a - b >= -cap) places_.add(a, b);
+    }
+    for (std::size_t l = 0; l < possible; ++l) {
+        const int q = possible_[l];
         const double a = a_[index(q)], b = b_[index(q)];
-        if (q == pair_.second) continue;
+        if (a - b > cap || !places_.may_have(b, a) || q == pair_.second) continue;
         std::size_t k = static_cast<std::size_t>(
             directory_[static_cast<std::size_t>(std::max(0.0, b - cap) * directory_scale_)]);
         for (; k < later_.size() && later_a_[k] <= b + cap; ++k) {
@@ -386,7 +440,11 @@ bool PairSearch::exchange(const Pair& p, const Pair& q, double level) const {
 /// Is there a pair with a smaller first point about this axis? Then the axis is that pair's to report.
 bool PairSearch::smaller_pair_turns(const Vector3d& middle, const Vector3d& axis, double reach,
                                     double level) const {
+    const std::uint64_t *from_first = steps_.of(pair_.first), *from_second = steps_.of(pair_.second);
+    const std::uint16_t *to_first = steps_.row(pair_.first), *to_second = steps_.row(pair_.second);
     for (int r = 0; r < pair_.first; ++r) {
+        if (!DistanceSteps::has(from_first, to_second[r]) || !DistanceSteps::has(from_second, to_first[r]))
+            continue;
         const Vector3d off = at(r) - middle;
         const Vector3d image = middle + 2 * axis * axis.dot(off) - off;
         bool found = false;
