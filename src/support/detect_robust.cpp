@@ -53,11 +53,11 @@ public:
         std::iota(points.begin(), points.end(), 0);
         // What is exact first, which is found among few candidates; what is not, then among few points.
         constexpr double kExact = 4;  // resolutions
-        constexpr std::size_t kStay = 8;
+        constexpr std::size_t kShare = 8;
         const double exact = kExact * cloud_.scene().resolution;
         if (exact < reach) {
             look_at(points, exact, 3e5);
-            points = representatives(cloud_, collection_.supports(), kStay);
+            points = representatives(cloud_, collection_.supports(), kShare, Stay::outer);
         }
         look_at(points, reach, 1e6);
         offer_roots();
@@ -98,7 +98,7 @@ private:
         // Points that are exactly alike suggest alike.
         constexpr std::size_t kFocus = 16;
         Focus focus(static_cast<std::size_t>(cloud_.size()), 0);
-        for (const int i : representatives(cloud_, collection_.supports(), kFocus))
+        for (const int i : representatives(cloud_, collection_.supports(), kFocus, Stay::inner))
             focus[static_cast<std::size_t>(i)] = 1;
         offer_groups(groups, focus);
     }

@@ -36,18 +36,21 @@ std::vector<SearchGroup> exact_orbits(const Cloud& cloud, const std::vector<Supp
     return out;
 }
 
-/// Farthest from its middle first; of equally far ones, to rounding, the first.
-void outer_first(const Cloud& cloud, SearchGroup& orbit) {
+/// By their distance from its middle; of equally far ones, to rounding, the first in the input first.
+void sort_orbit(const Cloud& cloud, Stay first, SearchGroup& orbit) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (const int i : orbit) middle += cloud[i] / static_cast<double>(orbit.size());
     const double step = 2 * kExact * cloud.scene().resolution;
     const auto steps = [&](int i) { return std::round((cloud[i] - middle).norm() / step); };
-    std::stable_sort(orbit.begin(), orbit.end(), [&](int a, int b) { return steps(a) > steps(b); });
+    const double sign = first == Stay::outer ? -1 : 1;
+    std::stable_sort(orbit.begin(), orbit.end(),
+                     [&](int a, int b) { return sign * steps(a) < sign * steps(b); });
 }
 
 }  // namespace
 
-SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports, std::size_t share) {
+SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports, std::size_t share,
+                            Stay stay) {
     SearchGroup out;
     if (cloud.size() <= kFew) {
         out.resize(static_cast<std::size_t>(cloud.size()));
@@ -55,10 +58,10 @@ SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supp
         return out;
     }
     for (SearchGroup& orbit : exact_orbits(cloud, supports)) {
-        const std::size_t stay = std::max(kLeast, orbit.size() / share);
-        if (stay < orbit.size()) {
-            outer_first(cloud, orbit);
-            orbit.resize(stay);
+        const std::size_t count = std::max(kLeast, orbit.size() / share);
+        if (count < orbit.size()) {
+            sort_orbit(cloud, stay, orbit);
+            orbit.resize(count);
         }
         out.insert(out.end(), orbit.begin(), orbit.end());
     }

@@ -64,17 +64,28 @@ TEST(Representatives, AQuarterOfEachOrbitAtItsEndsAndWhatIsOfNone) {
         // Three of twelve: both ends, and of the next two the first.
         if (copy <= 1 || copy >= kCopies - 1) expected.push_back(i);
     }
-    EXPECT_EQ(representatives(row.cloud, {row.translation}, 4), expected);
+    EXPECT_EQ(representatives(row.cloud, {row.translation}, 4, Stay::outer), expected);
+}
+
+TEST(Representatives, OrTheOnesInTheMiddle) {
+    const Row row;
+    std::vector<int> expected;
+    for (int i = 0; i < row.cloud.size(); ++i) {
+        const int copy = i / kPoints;
+        // Three of twelve: the two in the middle, and of the next two the first; and what is scattered.
+        if ((copy >= kCopies / 2 - 2 && copy <= kCopies / 2) || copy >= kCopies) expected.push_back(i);
+    }
+    EXPECT_EQ(representatives(row.cloud, {row.translation}, 4, Stay::inner), expected);
 }
 
 TEST(Representatives, WhatIsNotExactOrNotSureStandsForNothing) {
     Row row;
     row.translation.tolerance = 1e-3;
-    EXPECT_EQ(representatives(row.cloud, {row.translation}, 4), row.everything());
+    EXPECT_EQ(representatives(row.cloud, {row.translation}, 4, Stay::outer), row.everything());
     row.translation.tolerance = 0;
     row.translation.significance = -1;
-    EXPECT_EQ(representatives(row.cloud, {row.translation}, 4), row.everything());
-    EXPECT_EQ(representatives(row.cloud, {}, 4), row.everything());
+    EXPECT_EQ(representatives(row.cloud, {row.translation}, 4, Stay::outer), row.everything());
+    EXPECT_EQ(representatives(row.cloud, {}, 4, Stay::outer), row.everything());
 }
 
 }  // namespace

@@ -208,6 +208,34 @@ TEST(RobustLocal, ARoughMirrorOfExactRowsIsFound) {
     EXPECT_TRUE(std::any_of(result.symmetries.begin(), result.symmetries.end(), is_row));
 }
 
+// The mirrors of the arc are found before its turn, and carry its points into one another: one that stands
+// for them must not be at its end, where nothing turns on.
+TEST(RobustLocal, TheTurnOfAnExactOpenArcIsFound) {
+    constexpr int kHoles = 12;
+    std::mt19937_64 random(5);
+    for (const int levels : {1, 2, 3}) {
+        PointSet points;
+        points.dimension = 3;
+        for (int k = 0; k < kHoles; ++k) {
+            const double angle = 20 * k * std::numbers::pi / 180;
+            for (int level = 0; level < levels; ++level)
+                points.positions.push_back({5 * std::cos(angle), 5 * std::sin(angle), 0.7 * level});
+        }
+        for (int k = 0; k < 200; ++k)
+            points.positions.push_back(
+                {uniform(random, -20, 20), uniform(random, -20, 20), uniform(random, -20, 20)});
+        const DetectResult result = robust(points);
+        const auto is_turn = [&](const Symmetry& s) {
+            std::size_t links = 0;
+            for (const Orbit& o : s.cycles) links += o.points.size() - 1;
+            return s.type == SymmetryType::rotation && std::abs(s.isometry.angle_deg - 20) < 1e-6 &&
+                   links == static_cast<std::size_t>(levels * (kHoles - 1));
+        };
+        EXPECT_TRUE(std::any_of(result.symmetries.begin(), result.symmetries.end(), is_turn))
+            << levels << " levels";
+    }
+}
+
 TEST(RobustLocal, PatternsOfALargeSetAreFoundWhole) {
     PointSet set;
     const std::vector<LocalPattern> patterns = local_patterns(set, 7);
