@@ -102,6 +102,7 @@ SIZES = (100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000)
 QUICK_SIZES = (60, 200)
 MOST_OF_PAPER = 10000  # method paper keeps all distances
 TARGETS = {2000: 0.5, 20000: 10, 100000: 120}  # seconds for an assembly, method robust
+TARGET_TIME_LIMIT = 150  # at least, of a run that has a target
 
 
 def random_points(n):
@@ -125,9 +126,12 @@ def grow(bench, method, family):
             break
         points, truth = FAMILIES[family](n)
         path = bench.points(f"{family}{n}", points)
-        runs = [bench.detect(path, method=method)]
+        arguments = {"method": method}
+        if (method, family) == ("robust", "assembly") and not bench.quick:
+            arguments["time_limit"] = max(TARGET_TIME_LIMIT, bench.options.time_limit)
+        runs = [bench.detect(path, **arguments)]
         while detect_s(runs[0]) < 0.5 and len(runs) < (1 if bench.quick else bench.options.repetitions):
-            runs.append(bench.detect(path, method=method))
+            runs.append(bench.detect(path, **arguments))
         found = assembly.score(runs[0].report, truth) if truth else None
         rows.append((len(points), median(runs, detect_s), max(r.peak_mib for r in runs), found, runs[0].stopped))
         if runs[0].stopped:

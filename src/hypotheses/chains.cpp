@@ -53,10 +53,15 @@ public:
         if (found_.size() >= 2 * most_ + 1000) cut();
     }
 
-    std::vector<Candidate> sorted() {
+    /// In any order.
+    std::vector<Candidate> kept() {
         cut();
-        std::sort(found_.begin(), found_.end(), before);
         return std::move(found_);
+    }
+    std::vector<Candidate> sorted() {
+        std::vector<Candidate> out = kept();
+        std::sort(out.begin(), out.end(), before);
+        return out;
     }
 
 private:
@@ -88,7 +93,7 @@ std::vector<Candidate> best_of_parts(const Search& search, std::size_t most, con
     parallel_for(kParts, [&](int part) { run(parts[static_cast<std::size_t>(part)], part); });
     BestCandidates best(most);
     for (Search& part : parts)
-        for (const Candidate& c : part.best().sorted()) best.add(c);
+        for (const Candidate& c : part.best().kept()) best.add(c);
     return best.sorted();
 }
 

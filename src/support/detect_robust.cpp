@@ -52,9 +52,8 @@ public:
         SearchGroup points(static_cast<std::size_t>(cloud_.size()));
         std::iota(points.begin(), points.end(), 0);
         // What is exact first, which is found among few candidates; what is not, then among few points.
-        constexpr double kExact = 4;  // resolutions
         constexpr std::size_t kShare = 8;
-        const double exact = kExact * cloud_.scene().resolution;
+        const double exact = exact_reach();
         if (exact < reach) {
             look_at(points, exact, 3e5);
             points = representatives(cloud_, collection_.supports(), kShare, Stay::outer);
@@ -70,6 +69,11 @@ public:
     }
 
 private:
+    double exact_reach() const {
+        constexpr double kExact = 4;  // resolutions
+        return kExact * cloud_.scene().resolution;
+    }
+
     /// So many hypotheses of each source, for 100 points; in a large set one costs little, as most are local,
     /// and what there is to find grows with the points.
     double budget(double at_100) const {
@@ -80,21 +84,25 @@ private:
     /// Hypotheses from pairs and chains of `points` to a tolerance. `looks`: of all points, at pairs of
     /// pairs.
     void look_at(const SearchGroup& points, double reach, double looks) {
+        // There votes are counted in cells of one size only.
+        const bool exact = reach <= exact_reach();
         const auto n = static_cast<double>(points.size());
         // Fewer points, fewer hypotheses.
         const double share = n / cloud_.size();
         const auto of_share = [&](double most) { return static_cast<std::size_t>(share * share * most); };
         // In looks at a point: many are needed where noise hides which are meant.
         const auto looked = [&](double all) { return 100 + all / cloud_.size(); };
-        const auto voted = of_share(budget(600) + std::min(n / 8, 500.0));
+        const auto voted = of_share(budget(600) + std::min(n / 5, 500.0));
         const Groups groups(cloud_, points, !all_pairs_vote(points), reach,
                             {of_share(looked(3e5) + n / 4), of_share(looked(1e5) + n / 8),
                              of_share(budget(200) + n / 8), share * share * looks, share * share * share});
         monitor_.begin_stage("votes of pairs", 1);
         const std::vector<std::vector<Hypothesis>> votes = votes_of(points, reach, voted / 2);
         std::vector<Source> sources;
-        for (const std::vector<Hypothesis>& v : votes) sources.push_back(source(v, voted));
+        for (const std::vector<Hypothesis>& v : votes)
+            sources.push_back(source(v, exact ? voted / 2 : voted));
         offer(std::move(sources));
+        monitor_.advance();
         // Points that are exactly alike suggest alike.
         constexpr std::size_t kFocus = 16;
         Focus focus(static_cast<std::size_t>(cloud_.size()), 0);
@@ -327,6 +335,8 @@ private:
         }
     }
 
+    static constexpr std::size_t kMostElements = 130;  // of a finite group that is looked for
+
     /// A look at a sample: of the points that a symmetry of nearly all carries.
     static constexpr double kMany = 0.6;
 
@@ -352,7 +362,6 @@ private:
 
     /// Products of the symmetries of the whole set, until there are no more: they form a group.
     void close_products() {
-        constexpr std::size_t kMostElements = 130;
         std::size_t done = 0, multiplied = 0;
         std::vector<std::size_t> whole;
         for (int round = 0; round < 4 && !monitor_.should_stop(); ++round) {
@@ -382,7 +391,7 @@ private:
                    std::none_of(products.begin(), products.end(), [&](const Hypothesis& other) {
                        return (h.map.linear - other.map.linear).norm() * cloud_.radius() +
                                   (h.map.shift - other.map.shift).norm() <=
-                              cloud_.scene().resolution;
+                              2 * std::max(h.off, cloud_.scene().resolution);
                    });
         };
         for (std::size_t a = 0; a < whole.size(); ++a)
@@ -390,6 +399,8 @@ private:
                 if (std::max(a, b) < multiplied) continue;
                 Hypothesis h = product(all[whole[a]], all[whole[b]]);
                 if (leaves_a_point(h) && is_new(h)) products.push_back(std::move(h));
+                // Of no one group: the centres differ, as of a grid and its parts.
+                if (products.size() > kMostElements) return {};
             }
         std::vector<char> many(products.size());
         parallel_for(products.size(), [&](std::size_t k) {

@@ -154,7 +154,8 @@ private:
 /// both coordinates, is there.
 class PlaceBits {
 public:
-    explicit PlaceBits(double reach) : reach_(reach * (1 + 1e-9)), scale_(1 / (2 * reach_)) {}
+    /// A hair more than `reach`, lest rounding lose a place.
+    PlaceBits(double reach, double diameter) : reach_(reach + 1e-12 * diameter), scale_(1 / (2 * reach_)) {}
 
     void clear() { bits_.fill(0); }
     /// Neither coordinate is below 0.
@@ -254,7 +255,7 @@ PairSearch::PairSearch(const Scene& scene, const PointGrid& grid, const Distance
       out_(out),
       pair_{first, first},
       a_(scene.distances.row(first)),
-      places_(scene.max_tolerance) {
+      places_(scene.max_tolerance, scene.diameter) {
     for (const int q : scene.distances.nearest_first(first))
         if (q > first) later_.push_back(q);
     for (const int q : later_) later_a_.push_back(a_[index(q)]);
