@@ -99,6 +99,7 @@ private:
         monitor_.begin_stage("votes of pairs", 1);
         const std::vector<std::vector<Hypothesis>> votes = votes_of(points, reach, voted / 2);
         std::vector<Source> sources;
+        sources.reserve(votes.size());
         for (const std::vector<Hypothesis>& v : votes)
             sources.push_back(source(v, exact ? voted / 2 : voted));
         offer(std::move(sources));
