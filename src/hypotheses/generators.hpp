@@ -36,9 +36,8 @@ inline bool in(const Focus& focus, int point) {
 PointPairs pairs_within(const SearchGroup& group, const Focus& focus);
 
 /// Translations, inversions (half-turns in the plane) and mirrors: each pair is a vote for one of each. Votes
-/// are counted in cells of several sizes up to `reach`; the fullest `most` cells of each size come back, and
-/// four times as many of the smallest, as exact votes on a border take several: the smallest cells first, and
-/// the fullest of each size. Time and memory linear in the pairs.
+/// are counted in cells of several sizes up to `reach`; the fullest `most` cells of each size come back,
+/// the smallest cells first, and the fullest of each size. Time and memory linear in the pairs.
 std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, const PointPairs& pairs, double reach,
                              std::size_t most);
 

@@ -294,10 +294,8 @@ std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, const PointP
         count.fullest(size, true, most, out);
         size /= 8;
     }
-    // What is exact is much smaller than a cell; what is not came up in wider ones. Where it lies on a border
-    // it takes more than one.
-    constexpr std::size_t kBesides = 4;
-    count.fullest(finest, false, kBesides * most, out);
+    // What is exact is much smaller than a cell; what is not came up in wider ones.
+    count.fullest(finest, false, most, out);
     std::reverse(out.begin(), out.end());
     return out;
 }

@@ -217,11 +217,11 @@ private:
         return found.agreeing < kSome ? most : std::min(most / 4, found.agreeing + most / 32);
     }
 
-    /// A few groups at a time.
+    /// A few groups at a time, and meanwhile what the next ones suggest, which does not depend on them.
     void offer_groups(const Groups& groups, const Focus& focus) {
         monitor_.begin_stage("chains of points", groups.groups.size());
-        for (std::size_t first = 0; first < groups.groups.size() && !monitor_.should_stop();) {
-            const std::vector<Suggestions> found = suggestions_from(groups, focus, first);
+        std::vector<Suggestions> found = suggestions_from(groups, focus, 0), next;
+        for (std::size_t first = 0; !found.empty() && !monitor_.should_stop(); found = std::move(next)) {
             std::vector<Source> sources;
             for (std::size_t k = 0; k < found.size(); ++k) {
                 const GroupBudget most = groups.budget_of(first + k);
@@ -231,8 +231,13 @@ private:
                 sources.push_back(source(found[k].half_turns, most.half_turns));
                 monitor_.advance();
             }
-            offer(std::move(sources));
             first += found.size();
+            parallel_for(2, [&](int k) {
+                if (k == 0)
+                    offer(std::move(sources));
+                else
+                    next = suggestions_from(groups, focus, first);
+            });
         }
     }
 
