@@ -221,7 +221,7 @@ private:
     void offer_groups(const Groups& groups, const Focus& focus) {
         monitor_.begin_stage("chains of points", groups.groups.size());
         std::vector<Suggestions> found = suggestions_from(groups, focus, 0), next;
-        for (std::size_t first = 0; !found.empty() && !monitor_.should_stop(); found = std::move(next)) {
+        for (std::size_t first = 0; !found.empty() && !monitor_.should_stop(); found.swap(next)) {
             std::vector<Source> sources;
             for (std::size_t k = 0; k < found.size(); ++k) {
                 const GroupBudget most = groups.budget_of(first + k);
