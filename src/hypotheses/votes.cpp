@@ -7,6 +7,7 @@
 
 #include "hypotheses/generators.hpp"
 #include "hypotheses/places.hpp"
+#include "parallel_for.hpp"
 
 namespace insym {
 namespace {
@@ -14,21 +15,16 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-struct Ballot {
-    Vector3d place;  // where in the space of isometries
-    int from, to;
-};
-
 constexpr int kFewVotes = 3;  // chance does as well with less
 
 /// What a pair votes for, as a point: a translation's vector, an inversion's centre, a mirror's image of a
 /// point far outside (which no plane through the set comes near).
 Vector3d ballot_place(SymmetryType type, const Vector3d& a, const Vector3d& b, const Vector3d& outside) {
     if (type == SymmetryType::translation) return (b - a).dot(kAskew) < 0 ? Vector3d(a - b) : Vector3d(b - a);
-    Vector3d middle = (a + b) / 2;
+    const Vector3d middle = (a + b) / 2;
     if (type == SymmetryType::inversion || type == SymmetryType::half_turn) return middle;
-    const Vector3d normal = (b - a).normalized();
-    return outside - 2 * normal * normal.dot(outside - middle);
+    const Vector3d normal = b - a;
+    return outside - normal * (2 * normal.dot(outside - middle) / normal.squaredNorm());
 }
 
 RigidMap map_of(SymmetryType type, const Vector3d& a, const Vector3d& b, int dimension) {
@@ -40,9 +36,11 @@ class Cell {
 public:
     Cell(const Vector3d& place, double size) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double at = place[static_cast<Eigen::Index>(axis)] / size, low = std::floor(at);
-            sum_ += static_cast<std::uint64_t>(static_cast<std::int64_t>(low)) * kFactors[axis];
-            beside_[axis] = at - low < 0.5 ? 0 - kFactors[axis] : kFactors[axis];
+            const double at = place[static_cast<Eigen::Index>(axis)] / size;
+            auto low = static_cast<std::int64_t>(at);  // a call of floor takes longer
+            if (at < static_cast<double>(low)) --low;
+            sum_ += static_cast<std::uint64_t>(low) * kFactors[axis];
+            beside_[axis] = at - static_cast<double>(low) < 0.5 ? 0 - kFactors[axis] : kFactors[axis];
         }
     }
 
@@ -119,12 +117,12 @@ private:
 class Count {
 public:
     Count(const Cloud& cloud, SymmetryType type, const PointPairs& pairs)
-        : cloud_(cloud), type_(type), alive_(pairs.size()) {
-        const Vector3d outside = 2.2 * cloud.radius() * kOutside.normalized();
-        const Vector3d far = cloud.dimension() == 2 ? Vector3d(outside.x(), outside.y(), 0) : outside;
-        ballots_.reserve(pairs.size());
-        for (const auto& [i, j] : pairs)
-            ballots_.push_back({ballot_place(type, cloud[i], cloud[j], far), i, j});
+        : cloud_(cloud),
+          type_(type),
+          pairs_(pairs),
+          outside_(2.2 * cloud.radius() * kOutside.normalized()),
+          alive_(pairs.size()) {
+        if (cloud.dimension() == 2) outside_.z() = 0;
         std::iota(alive_.begin(), alive_.end(), 0);
     }
 
@@ -139,7 +137,7 @@ public:
         }
         std::sort(ranked.rbegin(), ranked.rend());
         for (const Ranked& r : ranked)
-            out.push_back(hypothesis(ballots_[static_cast<std::size_t>(r.first)], size));
+            out.push_back(hypothesis(r.first, size));
     }
 
 private:
@@ -149,41 +147,89 @@ private:
         bool operator<(const Ranked& o) const { return votes != o.votes ? votes > o.votes : first < o.first; }
     };
 
-    std::vector<std::uint32_t> keys(double size) const {
-        std::vector<std::uint32_t> out;
-        out.reserve(alive_.size());
-        for (const int b : alive_) out.push_back(Cell(place(b), size).key());
+    struct Vote {
+        std::uint32_t key;
+        int ballot;
+    };
+
+    /// Votes in parts by their cells, which can be counted each by itself, in a table that a cache holds.
+    struct Parts {
+        static constexpr std::size_t kParts = 16, kRun = 8192;
+        std::vector<Vote> votes;  // runs of the ballots in their order, each run by parts
+        std::vector<std::array<std::size_t, kParts + 1>> starts;  // of the parts of each run
+
+        template <class Visit>
+        void visit(std::size_t part, Visit visit) const {
+            for (const auto& start : starts)
+                for (std::size_t k = start[part]; k < start[part + 1]; ++k) visit(votes[k]);
+        }
+        std::size_t size(std::size_t part) const {
+            std::size_t sum = 0;
+            for (const auto& start : starts) sum += start[part + 1] - start[part];
+            return sum;
+        }
+    };
+
+    Parts parts(double size) const {
+        Parts out;
+        out.votes.resize(alive_.size());
+        out.starts.resize((alive_.size() + Parts::kRun - 1) / Parts::kRun);
+        const auto part_of = [](std::uint32_t key) { return key >> 28U; };
+        parallel_for(out.starts.size(), [&](std::size_t run) {
+            const std::size_t begin = run * Parts::kRun, end = std::min(begin + Parts::kRun, alive_.size());
+            std::array<std::uint32_t, Parts::kRun> keys;
+            auto& start = out.starts[run];
+            start.fill(0);
+            for (std::size_t k = begin; k < end; ++k) {
+                keys[k - begin] = Cell(place(alive_[k]), size).key();
+                ++start[part_of(keys[k - begin]) + 1];
+            }
+            start[0] = begin;
+            std::partial_sum(start.begin(), start.end(), start.begin());
+            auto next = start;
+            for (std::size_t k = begin; k < end; ++k)
+                out.votes[next[part_of(keys[k - begin])]++] = {keys[k - begin], alive_[k]};
+        });
+        return out;
+    }
+
+    std::vector<Ranked> count(double size) const {
+        const Parts all = parts(size);
+        std::array<std::vector<Ranked>, Parts::kParts> ranked;
+        parallel_for(Parts::kParts, [&](std::size_t part) { ranked[part] = count_part(all, part); });
+        std::vector<Ranked> out;
+        for (const std::vector<Ranked>& r : ranked) out.insert(out.end(), r.begin(), r.end());
         return out;
     }
 
     /// Most cells hold too few votes, which a small table of counts tells.
-    std::vector<Ranked> count(double size) {
-        const std::vector<std::uint32_t> all = keys(size);
+    static std::vector<Ranked> count_part(const Parts& all, std::size_t part) {
         std::size_t places = 16;
-        while (places < 4 * all.size()) places *= 2;
+        while (places < 4 * all.size(part)) places *= 2;
         std::vector<std::uint8_t> votes(places, 0);
-        for (const std::uint32_t key : all) {
-            std::uint8_t& v = votes[key & (places - 1)];
+        all.visit(part, [&](const Vote& vote) {
+            std::uint8_t& v = votes[vote.key & (places - 1)];
             v = static_cast<std::uint8_t>(std::min(v + 1, kFewVotes));
-        }
-        std::vector<std::pair<std::uint32_t, int>> left;  // cell and ballot
-        for (std::size_t k = 0; k < all.size(); ++k)
-            if (votes[all[k] & (places - 1)] >= kFewVotes) left.emplace_back(all[k], alive_[k]);
+        });
+        std::vector<Vote> left;
+        all.visit(part, [&](const Vote& vote) {
+            if (votes[vote.key & (places - 1)] >= kFewVotes) left.push_back(vote);
+        });
         Cells cells(left.size());
-        for (const auto& [key, ballot] : left) cells.add(key, ballot);
+        for (const Vote& vote : left) cells.add(vote.key, vote.ballot);
         std::vector<Ranked> ranked;
-        alive_.clear();
-        for (const auto& [key, ballot] : left) {
-            alive_.push_back(ballot);
-            const Cells::Slot& own = cells.at(key);
-            if (own.first == ballot && own.count >= kFewVotes) ranked.push_back({own.count, ballot});
+        for (const Vote& vote : left) {
+            const Cells::Slot& own = cells.at(vote.key);
+            if (own.first == vote.ballot && own.count >= kFewVotes) ranked.push_back({own.count, vote.ballot});
         }
         return ranked;
     }
 
     std::vector<Ranked> count_joined(double size) {
         Cells cells(alive_.size());
-        const std::vector<std::uint32_t> keys = this->keys(size);
+        std::vector<std::uint32_t> keys;
+        keys.reserve(alive_.size());
+        for (const int b : alive_) keys.push_back(Cell(place(b), size).key());
         constexpr std::size_t kAhead = 16;
         const auto expect = [&](std::size_t k) {
             if (k < keys.size()) cells.expect(keys[k]);
@@ -219,23 +265,29 @@ private:
         return ranked;
     }
 
-    const Vector3d& place(int ballot) const { return ballots_[static_cast<std::size_t>(ballot)].place; }
+    /// Where in the space of isometries.
+    Vector3d place(int ballot) const {
+        const auto& [from, to] = pairs_[static_cast<std::size_t>(ballot)];
+        return ballot_place(type_, cloud_[from], cloud_[to], outside_);
+    }
 
-    Hypothesis hypothesis(const Ballot& b, double size) const {
+    Hypothesis hypothesis(int ballot, double size) const {
+        const auto& [from, to] = pairs_[static_cast<std::size_t>(ballot)];
         Hypothesis h;
         h.type = type_;
-        h.map = map_of(type_, cloud_[b.from], cloud_[b.to], cloud_.dimension());
-        h.center = (cloud_[b.from] + cloud_[b.to]) / 2;
-        h.radius = (cloud_[b.from] - cloud_[b.to]).norm() / 2;
+        h.map = map_of(type_, cloud_[from], cloud_[to], cloud_.dimension());
+        h.center = (cloud_[from] + cloud_[to]) / 2;
+        h.radius = (cloud_[from] - cloud_[to]).norm() / 2;
         h.off = size / 4;
-        h.from[0] = b.from;
-        h.to[0] = b.to;
+        h.from[0] = from;
+        h.to[0] = to;
         return h;
     }
 
     const Cloud& cloud_;
     SymmetryType type_;
-    std::vector<Ballot> ballots_;
+    const PointPairs& pairs_;  // the ballots
+    Vector3d outside_;
     std::vector<int> alive_;  // those that are not alone in a wider cell
 };
 
@@ -249,6 +301,7 @@ PointPairs spread_pairs(const Cloud& cloud, const SearchGroup& points, std::size
         total += static_cast<double>(members.size()) * static_cast<double>(members.size() - 1) / 2;
     const double share = std::min(1.0, static_cast<double>(most) / std::max(1.0, total));
     PointPairs pairs;
+    pairs.reserve(static_cast<std::size_t>(std::min(total, 1.1 * static_cast<double>(most))));
     for (auto& [label, members] : classes) {
         const std::size_t m = members.size();
         // With an anchor at either end of a share 1 - (1 - a)^2 of the pairs.
