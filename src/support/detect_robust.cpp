@@ -259,32 +259,50 @@ private:
     }
     void offer(const std::vector<Hypothesis>& hypotheses) { offer({source(hypotheses, hypotheses.size())}); }
 
-    /// Tries hypotheses, of all sources by turns, in blocks, so that what one finds spares the next ones the
-    /// work; the blocks do not depend on the threads.
+    /// Tries hypotheses, of all sources by turns, in blocks, so that what one finds spares the later ones the
+    /// work. While a block is gathered the last one's finds are collected and the next block is drawn; the
+    /// blocks do not depend on the threads.
     void offer(std::vector<Source> sources) {
-        constexpr std::size_t kBlock = 64;
-        std::vector<Hypothesis> block;
-        std::vector<std::optional<Support>> found;
-        while (!monitor_.should_stop()) {
-            std::erase_if(sources, [](const Source& s) { return s.ended(); });
-            if (sources.empty()) return;
-            const std::size_t share = std::max<std::size_t>(1, kBlock / sources.size());
-            block.clear();
-            for (Source& s : sources)
-                for (const std::size_t stop = s.tried + share; s.tried < stop && !s.ended(); ++s.next) {
-                    Hypothesis h = s.at(s.next);
-                    if (collection_.explains(h)) continue;
-                    block.push_back(std::move(h));
-                    ++s.tried;
-                }
+        std::vector<Hypothesis> block = next_block(sources), next;
+        std::vector<std::optional<Support>> found, last;
+        while (!block.empty() && !monitor_.should_stop()) {
             tried_ += block.size();
             found.assign(block.size(), std::nullopt);
-            parallel_for(block.size(), [&](std::size_t i) {
-                if (!monitor_.should_stop()) found[i] = gatherer_.gather(block[i], kKept);
+            parallel_for(2, [&](int k) {
+                if (k == 0) {
+                    parallel_for(block.size(), [&](std::size_t i) {
+                        if (!monitor_.should_stop()) found[i] = gatherer_.gather(block[i], kKept);
+                    });
+                } else {
+                    collect(last);
+                    next = next_block(sources);
+                }
             });
-            for (std::optional<Support>& f : found)
-                if (f) collection_.add(std::move(*f));
+            last.swap(found);
+            block.swap(next);
         }
+        collect(last);
+    }
+
+    std::vector<Hypothesis> next_block(std::vector<Source>& sources) const {
+        constexpr std::size_t kBlock = 32;
+        std::vector<Hypothesis> block;
+        std::erase_if(sources, [](const Source& s) { return s.ended(); });
+        const std::size_t share = std::max<std::size_t>(1, kBlock / std::max<std::size_t>(1, sources.size()));
+        for (Source& s : sources)
+            for (const std::size_t stop = s.tried + share; s.tried < stop && !s.ended(); ++s.next) {
+                Hypothesis h = s.at(s.next);
+                if (collection_.explains(h)) continue;
+                block.push_back(std::move(h));
+                ++s.tried;
+            }
+        return block;
+    }
+
+    void collect(std::vector<std::optional<Support>>& found) {
+        for (std::optional<Support>& f : found)
+            if (f) collection_.add(std::move(*f));
+        found.clear();
     }
 
     /// `off`: how well the map is known.
