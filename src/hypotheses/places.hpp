@@ -6,10 +6,6 @@
 
 namespace insym {
 
-/// A direction that no part is likely to be aligned with: it says which of an isometry and its inverse stands
-/// for both.
-inline const Eigen::Vector3d kAskew(0.6120, 0.3532, 0.7075);
-
 /// The direction of a point outside the set, whose image tells isometries apart.
 inline const Eigen::Vector3d kOutside(0.31, 0.74, 0.597);
 

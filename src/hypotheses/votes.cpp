@@ -136,8 +136,7 @@ public:
             ranked.resize(most);
         }
         std::sort(ranked.rbegin(), ranked.rend());
-        for (const Ranked& r : ranked)
-            out.push_back(hypothesis(r.first, size));
+        for (const Ranked& r : ranked) out.push_back(hypothesis(r.first, size));
     }
 
 private:
@@ -220,7 +219,8 @@ private:
         std::vector<Ranked> ranked;
         for (const Vote& vote : left) {
             const Cells::Slot& own = cells.at(vote.key);
-            if (own.first == vote.ballot && own.count >= kFewVotes) ranked.push_back({own.count, vote.ballot});
+            if (own.first == vote.ballot && own.count >= kFewVotes)
+                ranked.push_back({own.count, vote.ballot});
         }
         return ranked;
     }
@@ -304,12 +304,16 @@ PointPairs spread_pairs(const Cloud& cloud, const SearchGroup& points, std::size
     pairs.reserve(static_cast<std::size_t>(std::min(total, 1.1 * static_cast<double>(most))));
     for (auto& [label, members] : classes) {
         const std::size_t m = members.size();
-        // With an anchor at either end of a share 1 - (1 - a)^2 of the pairs.
-        const double anchor_share = share >= 1 ? 1 : share / 2;
-        const auto anchors = std::clamp<std::size_t>(
-            static_cast<std::size_t>(anchor_share * static_cast<double>(m)), std::min<std::size_t>(m, 8), m);
         std::stable_sort(members.begin(), members.end(),
                          [&](int a, int b) { return cloud[a].squaredNorm() < cloud[b].squaredNorm(); });
+        if (share >= 1) {
+            for (std::size_t i = 0; i < m; ++i)
+                for (std::size_t j = i + 1; j < m; ++j) pairs.emplace_back(members[i], members[j]);
+            continue;
+        }
+        // With an anchor at either end of a share 1 - (1 - a)^2 of the pairs.
+        const auto anchors = std::clamp<std::size_t>(
+            static_cast<std::size_t>(share / 2 * static_cast<double>(m)), std::min<std::size_t>(m, 8), m);
         std::vector<char> anchor(m, 0);
         for (std::size_t k = 0; k < anchors; ++k) anchor[(k * m + m / 2) / anchors] = 1;
         for (std::size_t i = 0; i < m; ++i)

@@ -29,6 +29,10 @@ inline RigidMap inverse(const RigidMap& map) {
 /// The map of an isometry in coordinates about `middle`.
 RigidMap map_about(const Isometry& isometry, const Eigen::Vector3d& middle);
 
+/// A direction that no part is likely to be aligned with, of length 1 or a hair less: it says which of an
+/// isometry and its inverse stands for both, and gives places an order.
+inline const Eigen::Vector3d kAskew(0.6120, 0.3532, 0.7075);
+
 /// One link: `from` is to be carried to `to`.
 struct Link {
     Eigen::Vector3d from;

@@ -1,6 +1,7 @@
 #include "ranking/implied.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -139,17 +140,25 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
     };
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return motion(a) > motion(b); });
+    // What could be a power of each. A half-turn, a mirror or an inversion can be one as well.
+    std::vector<std::vector<std::size_t>> carried(order.size());
+    parallel_for(order.size(), [&](std::size_t i) {
+        const std::size_t g = order[i];
+        for (std::size_t k = 0; k < symmetries.size() && !monitor.should_stop(); ++k)
+            if (k != g && (is_pair_type(symmetries[k].type) || motion(k) >= motion(g)) &&
+                all.carries(all[g], all[k]))
+                carried[i].push_back(k);
+    });
     for (std::size_t i = 0; i < order.size() && !monitor.should_stop(); ++i) {
         const std::size_t g = order[i];
         const double own = symmetries[g].significance;
-        std::vector<std::size_t> better;
-        for (std::size_t k = 0; k < symmetries.size(); ++k) {
-            // A power of a chance is no intent. A half-turn, a mirror or an inversion can be a power as well.
+        // A power of a chance is no intent.
+        std::vector<std::size_t>& better = carried[i];
+        std::erase_if(better, [&](std::size_t k) {
             const double its = symmetries[k].significance;
-            if (k != g && its <= own && own <= kShare * its &&
-                (is_pair_type(symmetries[k].type) || motion(k) >= motion(g)) && all.carries(all[g], all[k]))
-                better.push_back(k);
-        }
+            return !(its <= own && own <= kShare * its);
+        });
+        if (better.empty()) continue;
         std::sort(better.begin(), better.end(), [&](std::size_t a, std::size_t b) {
             return symmetries[a].significance < symmetries[b].significance;
         });
@@ -194,31 +203,53 @@ private:
     static constexpr std::size_t kMost = 24;
     static constexpr std::size_t kMostWords = 24;  // powers, forward and back
 
-    /// One point settles nearly all words: the second power takes it to where the first must fetch it from.
+    /// A word of one generator, by where it takes a point.
+    struct Word {
+        double along;  // an axis, in whose order they are kept
+        Vector3d place;
+        std::size_t generator, word;
+    };
+
+    /// One point settles nearly all products: the second power takes it to where the first must fetch it
+    /// from.
     std::vector<std::size_t> product_of_two(const Item& a, const std::vector<std::size_t>& able) const {
-        const int witness = a.points.front();
-        std::vector<std::vector<Vector3d>> taken(able.size()), fetched(able.size());
+        const Vector3d &witness = all_.place(a.points.front()), image = a.map(witness);
+        std::vector<Word> taken;
+        double widest = 0;
         for (std::size_t g = 0; g < able.size(); ++g) {
-            const std::vector<RigidMap>& powers = powers_[able[g]];
-            const std::size_t count = std::min(powers.size(), kMostWords);
-            for (std::size_t j = 0; j < count; ++j) {
-                taken[g].push_back(powers[j](all_.place(witness)));
-                fetched[g].push_back(inverse(powers[j])(a.map(all_.place(witness))));
+            for (std::size_t j = 0; j < words(able[g]); ++j) {
+                const Vector3d place = powers_[able[g]][j](witness);
+                taken.push_back({kAskew.dot(place), place, g, j});
             }
+            widest = std::max(widest, all_[ids_[able[g]]].slack);
         }
+        widest = 2 * (a.slack + 2 * widest);
+        std::sort(taken.begin(), taken.end(), [](const Word& x, const Word& y) { return x.along < y.along; });
+        std::vector<std::array<std::size_t, 4>> products;  // two generators, and their words
         for (std::size_t g = 0; g < able.size(); ++g)
-            for (std::size_t h = 0; h < able.size(); ++h) {
-                if (g == h) continue;
-                const std::size_t first = ids_[able[g]], second = ids_[able[h]];
-                const double slack = slack_of(a, all_[first], all_[second]);
-                for (std::size_t i = 0; i < fetched[g].size(); ++i)
-                    for (std::size_t j = 0; j < taken[h].size(); ++j)
-                        if ((fetched[g][i] - taken[h][j]).squaredNorm() <= slack * slack &&
-                            all_.equal(a, compose(powers_[able[g]][i], powers_[able[h]][j]), slack))
-                            return {first, second};
+            for (std::size_t i = 0; i < words(able[g]); ++i) {
+                const Vector3d fetched = inverse(powers_[able[g]][i])(image);
+                const double from = kAskew.dot(fetched) - 1.01 * widest;
+                auto second = std::lower_bound(taken.begin(), taken.end(), from,
+                                               [](const Word& w, double along) { return w.along < along; });
+                for (; second != taken.end() && second->along <= from + 2.02 * widest; ++second) {
+                    const double slack =
+                        slack_of(a, all_[ids_[able[g]]], all_[ids_[able[second->generator]]]);
+                    if (second->generator != g && (fetched - second->place).squaredNorm() <= slack * slack)
+                        products.push_back({g, second->generator, i, second->word});
+                }
             }
+        std::sort(products.begin(), products.end());
+        for (const auto& [g, h, i, j] : products) {
+            const std::size_t first = ids_[able[g]], second = ids_[able[h]];
+            if (all_.equal(a, compose(powers_[able[g]][i], powers_[able[h]][j]),
+                           slack_of(a, all_[first], all_[second])))
+                return {first, second};
+        }
         return {};
     }
+
+    std::size_t words(std::size_t generator) const { return std::min(powers_[generator].size(), kMostWords); }
 
     const Implications& all_;
     std::vector<std::size_t> ids_;

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "isometry/fit.hpp"
+#include "parallel_for.hpp"
 #include "ranking/significance.hpp"
 
 namespace insym {
@@ -221,39 +223,45 @@ private:
 
     /// Symmetries of no more than a few holes.
     void collect() {
+        std::vector<std::optional<Candidate>> found(symmetries_.size());
+        parallel_for(symmetries_.size(), [&](std::size_t k) { found[k] = candidate(k); });
+        for (std::optional<Candidate>& c : found)
+            if (c) candidates_.push_back(std::move(*c));
+        drop_looser();
+    }
+
+    std::optional<Candidate> candidate(std::size_t k) const {
         constexpr int kMany = 200;
         constexpr double kLeastCoverage = 0.3;
-        for (std::size_t k = 0; k < symmetries_.size(); ++k) {
-            const Symmetry& s = symmetries_[k];
-            if (s.type == SymmetryType::translation || s.type == SymmetryType::screw ||
-                s.type == SymmetryType::glide_reflection)
-                continue;
-            // Of many points nearly all are carried; of a few, noise may hide which.
-            if (cloud_.size() > kMany && s.coverage < kLeastCoverage) continue;
-            // A tolerance of the size of the gaps between points says nothing about their places.
-            if (s.deviation.max > 0.12 * cloud_.gap()) continue;
-            Candidate c{k,
-                        map_about(s.isometry, cloud_.middle()),
-                        std::max({1.5 * s.deviation.max, 2 * cloud_.scene().resolution}),
-                        {}};
-            // Points of no orbit that stay nearly in place: noise moves them, too.
-            constexpr double kShareOfGap = 0.08;
+        const Symmetry& s = symmetries_[k];
+        if (s.type == SymmetryType::translation || s.type == SymmetryType::screw ||
+            s.type == SymmetryType::glide_reflection)
+            return std::nullopt;
+        // Of many points nearly all are carried; of a few, noise may hide which.
+        if (cloud_.size() > kMany && s.coverage < kLeastCoverage) return std::nullopt;
+        // A tolerance of the size of the gaps between points says nothing about their places.
+        if (s.deviation.max > 0.12 * cloud_.gap()) return std::nullopt;
+        Candidate c{k,
+                    map_about(s.isometry, cloud_.middle()),
+                    std::max({1.5 * s.deviation.max, 2 * cloud_.scene().resolution}),
+                    {}};
+        // Points of no orbit that stay nearly in place: noise moves them, too.
+        constexpr double kShareOfGap = 0.08;
+        for (int i = 0; i < cloud_.size(); ++i) {
+            const Vector3d& p = cloud_[i];
+            const double off = (c.map(p) - p).norm();
+            if (off <= kShareOfGap * cloud_.gap()) c.slack = std::max(c.slack, off);
+        }
+        for (const bool back : {false, true})
             for (int i = 0; i < cloud_.size(); ++i) {
                 const Vector3d& p = cloud_[i];
-                const double off = (c.map(p) - p).norm();
-                if (off <= kShareOfGap * cloud_.gap()) c.slack = std::max(c.slack, off);
+                const Vector3d image =
+                    back ? Vector3d(c.map.linear.transpose() * (p - c.map.shift)) : c.map(p);
+                if (point_near(image, cloud_.label(i), 1.5 * c.slack)) continue;
+                c.holes.emplace_back(image, cloud_.label(i));
+                if (c.holes.size() > 2 * most_slots()) return std::nullopt;
             }
-            for (const bool back : {false, true})
-                for (int i = 0; i < cloud_.size() && c.holes.size() <= 2 * most_slots(); ++i) {
-                    const Vector3d& p = cloud_[i];
-                    const Vector3d image =
-                        back ? Vector3d(c.map.linear.transpose() * (p - c.map.shift)) : c.map(p);
-                    if (!point_near(image, cloud_.label(i), 1.5 * c.slack))
-                        c.holes.emplace_back(image, cloud_.label(i));
-                }
-            if (c.holes.size() <= 2 * most_slots()) candidates_.push_back(std::move(c));
-        }
-        drop_looser();
+        return c;
     }
 
     /// What holds much more loosely than the others is no element of their group: a box that is nearly a
