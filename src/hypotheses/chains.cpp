@@ -37,6 +37,13 @@ std::vector<Point> positions(const Cloud& cloud, const SearchGroup& group) {
     return out;
 }
 
+std::vector<char> within(const SearchGroup& group, const Focus& focus) {
+    std::vector<char> out;
+    out.reserve(group.size());
+    for (const int i : group) out.push_back(in(focus, i) ? 1 : 0);
+    return out;
+}
+
 /// The reach at which so many events are expected, if each takes `exponent` lengths that agree by chance.
 double affordable(double expected_per_reach, double budget, double exponent, double reach) {
     return std::min(reach, std::pow(budget / expected_per_reach, 1 / exponent));
@@ -129,12 +136,11 @@ bool ring_map(const Vector3d& a, const Vector3d& b, const Vector3d& c, RigidMap&
 
 class ChainSearch {
 public:
-    ChainSearch(const GroupDistances& group, const Focus& focus, double reach, double effort,
-                std::size_t most)
+    ChainSearch(const GroupDistances& group, double reach, double effort, std::size_t most)
         : cloud_(group.cloud),
           group_(group.group),
+          in_focus_(group.in_focus),
           distances_(group.distances),
-          focus_(focus),
           reach_(reach),
           best_(most) {
         const double n = distances_.size(), diameter = cloud_.scene().diameter;
@@ -164,7 +170,7 @@ public:
 
 private:
     const Vector3d& at(int i) const { return cloud_[group_[static_cast<std::size_t>(i)]]; }
-    bool of_focus(int i) const { return in(focus_, group_[static_cast<std::size_t>(i)]); }
+    bool of_focus(int i) const { return in_focus_[static_cast<std::size_t>(i)] != 0; }
 
     void triple(int a, int b, int c) {
         const double step = distances_(a, b);
@@ -173,14 +179,14 @@ private:
         const double across = distances_(a, c);
         // A straight row is a translation's.
         if (across > 2 * step * (1 - 1e-4)) return;
-        for (const auto& [x, y] : {std::pair(a, c), std::pair(c, a)}) {
-            const bool twice = of_focus(y);  // a chain is met from both of its inner points
-            distances_.visit_shell(y, step - four_, step + four_, [&, x = x, y = y](int d, double) {
-                if (d != b && d != x && std::abs(distances_(b, d) - across) <= four_ && (x < d || !twice))
+        distances_.visit_shell(b, across - four_, across + four_, [&](int d, double) {
+            for (const auto& [x, y] : {std::pair(a, c), std::pair(c, a)}) {
+                const bool twice = of_focus(y);  // a chain is met from both of its inner points
+                if (d != x && d != y && std::abs(distances_(y, d) - step) <= four_ && (x < d || !twice))
                     four(x, b, y, d);
-                return true;
-            });
-        }
+            }
+            return true;
+        });
     }
 
     void ring(int a, int b, int c) {
@@ -240,8 +246,8 @@ private:
 
     const Cloud& cloud_;
     const SearchGroup& group_;
+    const std::vector<char>& in_focus_;
     const Distances& distances_;
-    const Focus& focus_;
     double reach_;
     double three_ = 0;
     double four_ = 0;
@@ -258,11 +264,15 @@ Vector3d half_turn_axis(const Cloud& cloud, const std::array<int, 4>& points) {
     return along.norm() > across.norm() ? along : across;
 }
 
-/// Half-turns as pairs of pairs. A's mates are all points; B is one of a sample.
+/// Half-turns as pairs of pairs. A is any point, its mate of the focus; B is one of a sample.
 class HalfTurnSearch {
 public:
-    HalfTurnSearch(const GroupDistances& group, const Focus& focus, double reach, std::size_t most)
-        : cloud_(group.cloud), group_(group.group), distances_(group.distances), focus_(focus), best_(most) {
+    HalfTurnSearch(const GroupDistances& group, double reach, std::size_t most)
+        : cloud_(group.cloud),
+          group_(group.group),
+          in_focus_(group.in_focus),
+          distances_(group.distances),
+          best_(most) {
         const double n = distances_.size();
         slack_ = affordable(9 * n * n * n * n / 8 / std::pow(cloud_.scene().diameter, 2), 1e4, 2, reach);
         slack_ = std::max(slack_, 2 * cloud_.scene().resolution);
@@ -274,24 +284,26 @@ public:
         const int picks = std::max(4, std::min(n, static_cast<int>(looks / n / n)));
         all_ = picks == n;
         // What is looked up at random is of the mate.
-        for (int mate = part; mate < n; mate += kParts)
-            for (int a = 0; a < mate; ++a) {
-                if (!of_focus(a) && !of_focus(mate)) continue;
+        for (int mate = part; mate < n; mate += kParts) {
+            if (!of_focus(mate)) continue;
+            for (int a = 0; a < n; ++a) {
+                if (a == mate || (a > mate && of_focus(a))) continue;
                 for (int k = 0; k < picks; ++k) {
                     const int b = all_ ? k : pick(a, mate, k, picks);
                     if (b != a && b != mate) partner(a, mate, b);
                 }
             }
+        }
     }
 
     BestCandidates& best() { return best_; }
 
 private:
-    bool of_focus(int i) const { return in(focus_, group_[static_cast<std::size_t>(i)]); }
+    bool of_focus(int i) const { return in_focus_[static_cast<std::size_t>(i)] != 0; }
 
-    /// Half of them near A, as what turns about an axis there is often together, half anywhere.
+    /// Half of them near A's mate, as what turns about an axis there is often together, half anywhere.
     int pick(int a, int mate, int k, int picks) const {
-        if (k < picks / 2) return distances_.nearest_first(a)[static_cast<std::size_t>(k)];
+        if (k < picks / 2) return distances_.nearest_first(mate)[static_cast<std::size_t>(k)];
         const int n = distances_.size();
         return static_cast<int>((std::int64_t{k} * n + std::int64_t{7} * a + mate) / picks) % n;
     }
@@ -318,8 +330,8 @@ private:
 
     const Cloud& cloud_;
     const SearchGroup& group_;
+    const std::vector<char>& in_focus_;
     const Distances& distances_;
-    const Focus& focus_;
     bool all_ = true;  // points are B in turn
     double slack_ = 0;
     BestCandidates best_;
@@ -342,20 +354,18 @@ Hypothesis half_turn_of(const Cloud& cloud, const std::array<int, 4>& points) {
 
 }  // namespace
 
-GroupDistances::GroupDistances(const Cloud& of, const SearchGroup& points)
-    : cloud(of), group(points), distances(positions(of, points)) {}
+GroupDistances::GroupDistances(const Cloud& of, const SearchGroup& points, const Focus& focus)
+    : cloud(of), group(points), in_focus(within(points, focus)), distances(positions(of, points), in_focus) {}
 
-std::vector<Candidate> chains(const GroupDistances& group, const Focus& focus, double reach, double effort,
-                              std::size_t most) {
+std::vector<Candidate> chains(const GroupDistances& group, double reach, double effort, std::size_t most) {
     if (group.group.size() < 3) return {};
-    return best_of_parts(ChainSearch(group, focus, reach, effort, most), most,
+    return best_of_parts(ChainSearch(group, reach, effort, most), most,
                          [](ChainSearch& search, int part) { search.run(part); });
 }
 
-std::vector<Candidate> half_turns(const GroupDistances& group, const Focus& focus, double reach, double looks,
-                                  std::size_t most) {
+std::vector<Candidate> half_turns(const GroupDistances& group, double reach, double looks, std::size_t most) {
     if (group.group.size() < 4 || group.cloud.dimension() == 2) return {};
-    return best_of_parts(HalfTurnSearch(group, focus, reach, most), most,
+    return best_of_parts(HalfTurnSearch(group, reach, most), most,
                          [&](HalfTurnSearch& search, int part) { search.run(part, looks); });
 }
 

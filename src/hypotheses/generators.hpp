@@ -41,13 +41,15 @@ PointPairs pairs_within(const SearchGroup& group, const Focus& focus);
 std::vector<Hypothesis> vote(const Cloud& cloud, SymmetryType type, const PointPairs& pairs, double reach,
                              std::size_t most);
 
-/// A group with the distances of its points, which go by their place in it.
+/// A group with the distances of its points, which go by their place in it; in their order about those of the
+/// focus.
 struct GroupDistances {
     const Cloud& cloud;
     const SearchGroup& group;
+    std::vector<char> in_focus;  // each point of the group
     Distances distances;
 
-    GroupDistances(const Cloud& of, const SearchGroup& points);
+    GroupDistances(const Cloud& of, const SearchGroup& points, const Focus& focus);
 };
 
 /// A chain of points, or two pairs, that may be carried into one another. Small, as there are many.
@@ -61,15 +63,13 @@ struct Candidate {
 /// Half-turns from two pairs A, A' and B, B' with |AB| = |A'B'| and |AB'| = |A'B|. The `most` that agree
 /// best, best first. The first pair has a point of the focus. About `looks` pairs of pairs are looked at, and
 /// at least four for each pair.
-std::vector<Candidate> half_turns(const GroupDistances& group, const Focus& focus, double reach, double looks,
-                                  std::size_t most);
+std::vector<Candidate> half_turns(const GroupDistances& group, double reach, double looks, std::size_t most);
 
 /// Rotations from three points A, B, C with |AB| = |BC|, one of whose neighbours on the ring is there; every
 /// other kind from four with |AB| = |BC| = |CD| and |AC| = |BD|. The `most` that chance explains least, best
 /// first. Of a large group `reach` is lowered until chance gives about 60,000 of three and 10,000 of four,
 /// each times `effort`. B, or C of four, is of the focus.
-std::vector<Candidate> chains(const GroupDistances& group, const Focus& focus, double reach, double effort,
-                              std::size_t most);
+std::vector<Candidate> chains(const GroupDistances& group, double reach, double effort, std::size_t most);
 
 struct Agreed {
     std::vector<Candidate> candidates;

@@ -8,29 +8,33 @@
 
 namespace insym {
 
-Distances::Distances(const std::vector<Point>& positions)
+Distances::Distances(const std::vector<Point>& positions, const std::vector<char>& sorted)
     : n_(static_cast<int>(positions.size())),
       steps_(std::max(n_, 16)),
       // Every distance falls inside the directory, the diameter just so.
       directory_scale_(steps_ / (diameter(positions) * (1 + 1e-9))),
       matrix_(start(n_, n_)),
-      sorted_(start(n_, n_ - 1)),
-      order_(start(n_, n_ - 1)),
-      directory_(start(n_, steps_)) {
+      place_(positions.size()) {
+    int places = 0;
+    for (std::size_t i = 0; i < positions.size(); ++i) place_[i] = sorted[i] != 0 ? places++ : -1;
+    sorted_.resize(start(places, n_ - 1));
+    order_.resize(start(places, n_ - 1));
+    directory_.resize(start(places, steps_));
     parallel_for(n_, [&](int i) {
         double* out = matrix_.data() + start(i, n_);
         for (std::size_t j = 0; j < positions.size(); ++j)
             out[j] = distance(positions[static_cast<std::size_t>(i)], positions[j]);
-        sort_row(i);
+        if (place_of(i) >= 0) sort_row(i);
     });
 }
 
 /// Into the steps of the directory first, where few are left to be told apart.
 void Distances::sort_row(int i) {
     const std::span<const double> distance = row(i);
-    double* sorted = sorted_.data() + start(i, n_ - 1);
-    int* order = order_.data() + start(i, n_ - 1);
-    int* directory = directory_.data() + start(i, steps_);
+    const int place = place_of(i);
+    double* sorted = sorted_.data() + start(place, n_ - 1);
+    int* order = order_.data() + start(place, n_ - 1);
+    int* directory = directory_.data() + start(place, steps_);
     const auto step_of = [&](int j) {
         return static_cast<std::size_t>(distance[static_cast<std::size_t>(j)] * directory_scale_);
     };

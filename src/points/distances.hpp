@@ -9,10 +9,14 @@
 
 namespace insym {
 
-/// Immutable after construction; reading is thread-safe. Memory 24 n^2 bytes, time O(n^2 log n).
+/// Immutable after construction; reading is thread-safe. Memory 24 n^2 bytes, time O(n^2 log n); 8 n^2 and
+/// O(n^2) for the points that are not sorted about.
 class Distances {
 public:
-    explicit Distances(const std::vector<Point>& positions);
+    explicit Distances(const std::vector<Point>& positions)
+        : Distances(positions, std::vector<char>(positions.size(), 1)) {}
+    /// `sorted`: about which points the others are wanted in order.
+    Distances(const std::vector<Point>& positions, const std::vector<char>& sorted);
 
     int size() const { return n_; }
     double operator()(int i, int j) const { return row(i)[static_cast<std::size_t>(j)]; }
@@ -21,20 +25,20 @@ public:
     std::span<const double> row(int i) const {
         return {matrix_.data() + start(i, n_), static_cast<std::size_t>(n_)};
     }
-    /// All points but i itself, nearest first, equal distances by index.
+    /// All points but i itself, nearest first, equal distances by index. Of a sorted point only, as below.
     std::span<const int> nearest_first(int i) const {
-        return {order_.data() + start(i, n_ - 1), static_cast<std::size_t>(n_ - 1)};
+        return {order_.data() + start(place_of(i), n_ - 1), static_cast<std::size_t>(n_ - 1)};
     }
 
     /// Calls visit(point, distance) for every other point whose distance to i is in [low, high], nearest
     /// first, until it returns false. O(1) to find the first.
     template <class Visit>
     void visit_shell(int i, double low, double high, Visit visit) const {
-        const double* d = sorted_.data() + start(i, n_ - 1);
-        const int* point = order_.data() + start(i, n_ - 1);
+        const double* d = sorted_.data() + start(place_of(i), n_ - 1);
+        const int* point = order_.data() + start(place_of(i), n_ - 1);
         const double place = low * directory_scale_;
         if (place >= steps_) return;
-        int k = place > 0 ? directory_[start(i, steps_) + static_cast<std::size_t>(place)] : 0;
+        int k = place > 0 ? directory_[start(place_of(i), steps_) + static_cast<std::size_t>(place)] : 0;
         while (k < n_ - 1 && d[k] < low) ++k;
         for (; k < n_ - 1 && d[k] <= high; ++k)
             if (!visit(point[k], d[k])) return;
@@ -42,6 +46,7 @@ public:
 
 private:
     void sort_row(int i);
+    int place_of(int i) const { return place_[static_cast<std::size_t>(i)]; }
 
     static std::size_t start(int i, int width) {
         return static_cast<std::size_t>(i) * static_cast<std::size_t>(width);
@@ -51,6 +56,7 @@ private:
     int steps_ = 0;  // of distance, whose first points are known: about one for each point
     double directory_scale_ = 0;
     std::vector<double> matrix_;
+    std::vector<int> place_;      // of each sorted point in what follows
     std::vector<double> sorted_;  // the distances in the order of order_
     std::vector<int> order_;
     std::vector<int> directory_;  // for each point and step: the first place in its order at or beyond

@@ -98,6 +98,9 @@ private:
                 Vector3d place = cloud_[forward ? o.points.back() : o.points.front()];
                 for (int k = 0; k < kSteps; ++k) {
                     place = forward ? out.map(place) : back(place);
+                    // A row that has left the set never comes back.
+                    if (s.type == SymmetryType::translation && place.norm() > cloud_.radius() + 2 * out.slack)
+                        break;
                     cloud_.grid().visit_ball(to_point(place), 2 * out.slack, [&](int p, double) {
                         out.carried[static_cast<std::size_t>(p)] = true;
                         return true;
@@ -142,11 +145,15 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
               [&](std::size_t a, std::size_t b) { return motion(a) > motion(b); });
     // What could be a power of each. A half-turn, a mirror or an inversion can be one as well.
     std::vector<std::vector<std::size_t>> carried(order.size());
+    const auto kept_by_a_power = [&](std::size_t g, std::size_t k) {
+        // A power may become more significant yet, which makes it harder.
+        return symmetries[g].significance <= kShare * symmetries[k].significance;
+    };
     parallel_for(order.size(), [&](std::size_t i) {
         const std::size_t g = order[i];
         for (std::size_t k = 0; k < symmetries.size() && !monitor.should_stop(); ++k)
-            if (k != g && (is_pair_type(symmetries[k].type) || motion(k) >= motion(g)) &&
-                all.carries(all[g], all[k]))
+            if (k != g && kept_by_a_power(g, k) &&
+                (is_pair_type(symmetries[k].type) || motion(k) >= motion(g)) && all.carries(all[g], all[k]))
                 carried[i].push_back(k);
     });
     for (std::size_t i = 0; i < order.size() && !monitor.should_stop(); ++i) {
@@ -155,8 +162,7 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
         // A power of a chance is no intent.
         std::vector<std::size_t>& better = carried[i];
         std::erase_if(better, [&](std::size_t k) {
-            const double its = symmetries[k].significance;
-            return !(its <= own && own <= kShare * its);
+            return symmetries[k].significance > own || !kept_by_a_power(g, k);
         });
         if (better.empty()) continue;
         std::sort(better.begin(), better.end(), [&](std::size_t a, std::size_t b) {

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -195,14 +196,14 @@ private:
         Suggestions out;
         if (monitor_.should_stop()) return out;
         const GroupBudget budget = groups.budget_of(k);
-        const GroupDistances known(cloud_, groups.groups[k]);
+        const GroupDistances known(cloud_, groups.groups[k], focus);
         parallel_for(2, [&](int half) {
             if (half == 0)
-                out.chains = agreeing_first(
-                    cloud_, chains(known, focus, groups.reach, budget.effort, kept(budget.chains)));
+                out.chains =
+                    agreeing_first(cloud_, chains(known, groups.reach, budget.effort, kept(budget.chains)));
             else
                 out.half_turns = agreeing_first(
-                    cloud_, half_turns(known, focus, groups.reach, budget.looks, kept(budget.half_turns)));
+                    cloud_, half_turns(known, groups.reach, budget.looks, kept(budget.half_turns)));
         });
         if (!groups.with_votes) return out;
         const PointPairs pairs = pairs_within(groups.groups[k], focus);
@@ -499,6 +500,13 @@ private:
     /// How near the image of a point comes to a point that it does not belong to.
     double turns_ambiguous(const Pattern& p) const {
         double best = std::numeric_limits<double>::infinity();
+        // No more than from one image to the neighbour of its point, so that no link looks at all points.
+        if (!p.support.links.empty()) {
+            const auto [from, to] = p.support.links.front();
+            std::array<double, 1> neighbour{best};
+            cloud_.nearest_distances(to, neighbour);
+            best = (p.support.map(cloud_[from]) - cloud_[to]).norm() + neighbour[0] * (1 + 1e-9);
+        }
         for (const auto& link : p.support.links) {
             const int to = link.second;
             const Vector3d image = p.support.map(cloud_[link.first]);
