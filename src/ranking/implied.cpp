@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "isometry/fit.hpp"
@@ -15,13 +17,36 @@ using Eigen::Vector3d;
 
 constexpr int kMostPowers = 24;
 
+/// A set of points, a bit for each.
+class PointBits {
+public:
+    explicit PointBits(int n = 0) : words_((static_cast<std::size_t>(n) + 63) / 64) {}
+
+    void add(int p) { words_[static_cast<std::size_t>(p) / 64] |= bit(p); }
+    bool has(int p) const { return (words_[static_cast<std::size_t>(p) / 64] & bit(p)) != 0; }
+
+    /// Holds all of `others` but so many.
+    bool holds_but(const PointBits& others, std::size_t most) const {
+        std::size_t left = 0;
+        for (std::size_t w = 0; w < words_.size() && left <= most; ++w)
+            left += static_cast<std::size_t>(std::popcount(others.words_[w] & ~words_[w]));
+        return left <= most;
+    }
+
+private:
+    static std::uint64_t bit(int p) { return std::uint64_t{1} << (static_cast<unsigned>(p) & 63U); }
+
+    std::vector<std::uint64_t> words_;
+};
+
 /// A symmetry with what is asked of it again and again, about the middle of the set.
 struct Item {
     RigidMap map;
-    std::vector<bool> carried;  // points on its orbits, or left in place
-    std::vector<int> points;    // on its orbits
-    double slack = 0;           // how well a link says the map
-    double reach = 0;           // of its points from the middle
+    PointBits carried;        // points on its orbits, or left in place
+    PointBits own;            // on its orbits, unless they are few of many
+    std::vector<int> points;  // on its orbits
+    double slack = 0;         // how well a link says the map
+    double reach = 0;         // of its points from the middle
 };
 
 class Implications {
@@ -45,8 +70,9 @@ public:
     /// The share of a's points that b carries or leaves in place is (nearly) all.
     bool carries(const Item& b, const Item& a) const {
         std::size_t left = a.points.size() / 10;  // that it may leave out
+        if (!few(a)) return b.carried.holds_but(a.own, left);
         return std::all_of(a.points.begin(), a.points.end(),
-                           [&](int p) { return b.carried[static_cast<std::size_t>(p)] || left-- > 0; });
+                           [&](int p) { return b.carried.has(p) || left-- > 0; });
     }
 
     const Item& operator[](std::size_t k) const { return items_[k]; }
@@ -69,6 +95,8 @@ public:
     }
 
 private:
+    bool few(const Item& a) const { return a.points.size() < static_cast<std::size_t>(cloud_.size()) / 64; }
+
     double off(const Item& a, const RigidMap& other, int p) const {
         return (a.map(cloud_[p]) - other(cloud_[p])).squaredNorm();
     }
@@ -76,13 +104,11 @@ private:
     Item item(const Symmetry& s) const {
         Item out;
         out.map = map_about(s.isometry, cloud_.middle());
-        out.carried.assign(static_cast<std::size_t>(cloud_.size()), false);
-        for (const Orbit& o : s.cycles)
-            for (const int p : o.points) {
-                out.points.push_back(p);
-                out.carried[static_cast<std::size_t>(p)] = true;
-            }
-        for (const int p : s.fixed_points) out.carried[static_cast<std::size_t>(p)] = true;
+        for (const Orbit& o : s.cycles) out.points.insert(out.points.end(), o.points.begin(), o.points.end());
+        out.carried = PointBits(cloud_.size());
+        for (const int p : out.points) out.carried.add(p);
+        if (!few(out)) out.own = out.carried;
+        for (const int p : s.fixed_points) out.carried.add(p);
         out.slack = std::max(s.deviation.max, cloud_.scene().resolution);
         if (!is_pair_type(s.type) && s.significance < 0) carry_beyond_gaps(s, out);
         return out;
@@ -102,7 +128,7 @@ private:
                     if (s.type == SymmetryType::translation && place.norm() > cloud_.radius() + 2 * out.slack)
                         break;
                     cloud_.grid().visit_ball(to_point(place), 2 * out.slack, [&](int p, double) {
-                        out.carried[static_cast<std::size_t>(p)] = true;
+                        out.carried.add(p);
                         return true;
                     });
                 }
@@ -137,12 +163,12 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < symmetries.size(); ++k)
         if (!is_pair_type(symmetries[k].type) && symmetries[k].significance < 0) order.push_back(k);
-    const auto motion = [&](std::size_t k) {
-        const Isometry& f = symmetries[k].isometry;
-        return std::pair(std::round(f.angle_deg * 1e3), f.step);
-    };
+    std::vector<std::pair<double, double>> motion;
+    motion.reserve(symmetries.size());
+    for (const Symmetry& s : symmetries)
+        motion.emplace_back(std::round(s.isometry.angle_deg * 1e3), s.isometry.step);
     std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return motion(a) > motion(b); });
+              [&](std::size_t a, std::size_t b) { return motion[a] > motion[b]; });
     // What could be a power of each. A half-turn, a mirror or an inversion can be one as well.
     std::vector<std::vector<std::size_t>> carried(order.size());
     const auto kept_by_a_power = [&](std::size_t g, std::size_t k) {
@@ -153,7 +179,7 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
         const std::size_t g = order[i];
         for (std::size_t k = 0; k < symmetries.size() && !monitor.should_stop(); ++k)
             if (k != g && kept_by_a_power(g, k) &&
-                (is_pair_type(symmetries[k].type) || motion(k) >= motion(g)) && all.carries(all[g], all[k]))
+                (is_pair_type(symmetries[k].type) || motion[k] >= motion[g]) && all.carries(all[g], all[k]))
                 carried[i].push_back(k);
     });
     for (std::size_t i = 0; i < order.size() && !monitor.should_stop(); ++i) {
