@@ -314,20 +314,19 @@ PointPairs spread_pairs(const Cloud& cloud, const SearchGroup& points, std::size
         // With an anchor at either end of a share 1 - (1 - a)^2 of the pairs.
         const auto anchors = std::clamp<std::size_t>(
             static_cast<std::size_t>(share / 2 * static_cast<double>(m)), std::min<std::size_t>(m, 8), m);
-        std::vector<char> anchor(m, 0);
-        for (std::size_t k = 0; k < anchors; ++k) anchor[(k * m + m / 2) / anchors] = 1;
-        for (std::size_t i = 0; i < m; ++i)
-            for (std::size_t j = i + 1; j < m; ++j) {
-                // Mates under a symmetry of the whole stand side by side in this order.
-                if (anchor[i] == 0 && anchor[j] == 0 && j > i + 3) {
-                    if (share < 0.1) {
-                        // The next anchor.
-                        while (j + 1 < m && anchor[j + 1] == 0) ++j;
-                    }
-                    continue;
-                }
-                pairs.emplace_back(members[i], members[j]);
-            }
+        std::vector<std::size_t> anchor;
+        for (std::size_t k = 0; k < anchors; ++k) anchor.push_back((k * m + m / 2) / anchors);
+        auto next = anchor.begin();
+        for (std::size_t i = 0; i < m; ++i) {
+            // Mates under a symmetry of the whole stand side by side in this order.
+            constexpr std::size_t kBeside = 3;
+            const bool with_all = next != anchor.end() && *next == i;
+            const std::size_t beside = with_all ? m : std::min(m, i + kBeside + 1);
+            for (std::size_t j = i + 1; j < beside; ++j) pairs.emplace_back(members[i], members[j]);
+            if (with_all) ++next;
+            for (auto a = std::lower_bound(next, anchor.end(), beside); a != anchor.end(); ++a)
+                pairs.emplace_back(members[i], members[*a]);
+        }
     }
     return pairs;
 }
