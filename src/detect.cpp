@@ -106,13 +106,18 @@ bool listed(const Symmetry& s) {
 void measure_largest_first(const Measure& measure, RunMonitor& monitor, DetectResult& result) {
     constexpr std::size_t kAlways = 2000, kBlock = 512;
     std::vector<Symmetry>& all = result.symmetries;
-    const auto points = [](const Symmetry& s) {
-        std::size_t sum = 0;
-        for (const Orbit& o : s.cycles) sum += o.points.size();
-        return sum;
-    };
-    std::stable_sort(all.begin(), all.end(),
-                     [&](const Symmetry& a, const Symmetry& b) { return points(a) > points(b); });
+    std::vector<std::pair<std::size_t, std::size_t>> sizes;  // points moved, and place
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        sizes.emplace_back(0, k);
+        for (const Orbit& o : all[k].cycles) sizes.back().first += o.points.size();
+    }
+    std::sort(sizes.begin(), sizes.end(), [](const auto& a, const auto& b) {
+        return a.first != b.first ? a.first > b.first : a.second < b.second;
+    });
+    std::vector<Symmetry> sorted;
+    sorted.reserve(all.size());
+    for (const auto& [size, place] : sizes) sorted.push_back(std::move(all[place]));
+    all.swap(sorted);
     std::size_t done = 0;
     while (done < all.size() && (done < kAlways || !monitor.should_stop())) {
         const std::size_t end = std::min(all.size(), done + kBlock);

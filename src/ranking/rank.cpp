@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace insym {
 namespace {
@@ -20,7 +21,11 @@ bool cycles_before(const Symmetry& a, const Symmetry& b) {
 }  // namespace
 
 void rank(std::vector<Symmetry>& symmetries) {
-    std::sort(symmetries.begin(), symmetries.end(), [](const Symmetry& a, const Symmetry& b) {
+    // Their places are sorted, which are quicker to move.
+    std::vector<std::size_t> order(symmetries.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+        const Symmetry &a = symmetries[i], &b = symmetries[j];
         if (a.significance != b.significance) return a.significance < b.significance;
         const std::size_t m = moved_points(a), n = moved_points(b);
         if (m != n) return m > n;
@@ -30,8 +35,13 @@ void rank(std::vector<Symmetry>& symmetries) {
         if (x != y) return x < y;
         return cycles_before(a, b);
     });
-    int id = 0;
-    for (Symmetry& s : symmetries) s.id = ++id;
+    std::vector<Symmetry> ranked;
+    ranked.reserve(symmetries.size());
+    for (const std::size_t k : order) {
+        ranked.push_back(std::move(symmetries[k]));
+        ranked.back().id = static_cast<int>(ranked.size());
+    }
+    symmetries.swap(ranked);
 }
 
 }  // namespace insym

@@ -12,22 +12,20 @@ namespace {
 class Components {
 public:
     Components(std::size_t members, const std::vector<double>& tolerance_max)
-        : parent_(members), reversed_(members, 0), parts_(members) {
+        : parent_(members), next_(members), reversed_(members, 0), parts_(members) {
         std::iota(parent_.begin(), parent_.end(), 0);
-        for (std::size_t i = 0; i < members; ++i) {
-            parts_[i].members = {static_cast<int>(i)};
-            parts_[i].top = tolerance_max[i];
-        }
+        std::iota(next_.begin(), next_.end(), 0);
+        for (std::size_t i = 0; i < members; ++i) parts_[i].top = tolerance_max[i];
     }
 
     struct Part {
-        std::vector<int> members;
+        std::size_t members = 1;
         std::size_t edges = 0;
         double tolerance = 0;  // the largest of its edges
         double top = 0;        // the least E_max
         bool agrees = true;
         std::vector<int> recorded;  // clusters of this component that no later one holds
-        bool complete() const { return edges == members.size() * (members.size() - 1) / 2; }
+        bool complete() const { return edges == members * (members - 1) / 2; }
     };
 
     /// The root of i; sets `reversed` to i's direction relative to it.
@@ -50,6 +48,14 @@ public:
 
     Part& part(int root) { return parts_[static_cast<std::size_t>(root)]; }
 
+    /// Ascending.
+    std::vector<int> members_with(int i) const {
+        std::vector<int> out{i};
+        for (int m = next(i); m != i; m = next(m)) out.push_back(m);
+        std::sort(out.begin(), out.end());
+        return out;
+    }
+
     /// Adds an edge; returns the root of the component that it is in now.
     int connect(const Consistency& edge) {
         char a = 0, b = 0;
@@ -59,9 +65,10 @@ public:
         if (ra == rb) {
             if (between != 0) part(ra).agrees = false;
         } else {
-            if (part(ra).members.size() < part(rb).members.size()) std::swap(ra, rb);
+            if (part(ra).members < part(rb).members) std::swap(ra, rb);
             parent_[static_cast<std::size_t>(rb)] = ra;
             reversed_[static_cast<std::size_t>(rb)] = between;
+            std::swap(next_[static_cast<std::size_t>(ra)], next_[static_cast<std::size_t>(rb)]);
             absorb(part(ra), part(rb));
         }
         ++part(ra).edges;
@@ -71,10 +78,11 @@ public:
 
 private:
     int parent(int i) const { return parent_[static_cast<std::size_t>(i)]; }
+    int next(int i) const { return next_[static_cast<std::size_t>(i)]; }
     char direction(int i) const { return reversed_[static_cast<std::size_t>(i)]; }
 
     static void absorb(Part& into, Part& from) {
-        into.members.insert(into.members.end(), from.members.begin(), from.members.end());
+        into.members += from.members;
         into.recorded.insert(into.recorded.end(), from.recorded.begin(), from.recorded.end());
         into.edges += from.edges;
         into.tolerance = std::max(into.tolerance, from.tolerance);
@@ -84,6 +92,7 @@ private:
     }
 
     std::vector<int> parent_;
+    std::vector<int> next_;  // the members of each component in a ring
     std::vector<char> reversed_;
     std::vector<Part> parts_;
 };
@@ -92,7 +101,13 @@ private:
 
 Clustering complete_components(std::size_t members, std::vector<Consistency> edges,
                                const std::vector<double>& tolerance_max, double resolution) {
-    std::sort(edges.begin(), edges.end(), [](const Consistency& a, const Consistency& b) {
+    if (edges.empty()) return {{}, std::vector<char>(members, 0), 0};
+    // Most edges enter with the first, in any order.
+    const auto lower = [](const Consistency& a, const Consistency& b) { return a.tolerance < b.tolerance; };
+    const double least = std::min_element(edges.begin(), edges.end(), lower)->tolerance;
+    const auto later = std::partition(
+        edges.begin(), edges.end(), [&](const Consistency& e) { return e.tolerance <= least + resolution; });
+    std::sort(later, edges.end(), [](const Consistency& a, const Consistency& b) {
         return std::tie(a.tolerance, a.first, a.second) < std::tie(b.tolerance, b.first, b.second);
     });
     Components components(members, tolerance_max);
@@ -108,8 +123,7 @@ Clustering complete_components(std::size_t members, std::vector<Consistency> edg
         }
         Cluster cluster;
         cluster.tolerance = part.tolerance;
-        cluster.members = part.members;
-        std::sort(cluster.members.begin(), cluster.members.end());
+        cluster.members = components.members_with(root);
         char first = 0;
         components.root(cluster.members.front(), first);
         for (const int m : cluster.members) {
@@ -125,18 +139,33 @@ Clustering complete_components(std::size_t members, std::vector<Consistency> edg
     };
 
     std::vector<int> touched;
+    std::vector<char> is_touched(members, 0);
+    const auto touch = [&](int i) {
+        char& known = is_touched[static_cast<std::size_t>(i)];
+        if (known == 0) touched.push_back(i);
+        known = 1;
+    };
     for (std::size_t k = 0; k < edges.size();) {
-        const double level = edges[k].tolerance;
+        const double level = k == 0 ? least : edges[k].tolerance;
+        double highest = level;
         touched.clear();
-        for (; k < edges.size() && edges[k].tolerance <= level + resolution; ++k)
-            touched.push_back(components.connect(edges[k]));
-        for (int& t : touched) {
+        for (; k < edges.size() && edges[k].tolerance <= level + resolution; ++k) {
+            highest = std::max(highest, edges[k].tolerance);
+            touch(components.connect(edges[k]));
+        }
+        // Some have become part of others since.
+        std::vector<int> connected;
+        connected.swap(touched);
+        for (const int t : connected) is_touched[static_cast<std::size_t>(t)] = 0;
+        for (const int t : connected) {
             char ignored = 0;
-            t = components.root(t, ignored);
+            touch(components.root(t, ignored));
         }
         std::sort(touched.begin(), touched.end());
-        touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-        for (const int root : touched) record(root, edges[k - 1].tolerance);
+        for (const int root : touched) {
+            is_touched[static_cast<std::size_t>(root)] = 0;
+            record(root, highest);
+        }
     }
     return result;
 }

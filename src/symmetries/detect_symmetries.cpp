@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "parallel_for.hpp"
 #include "symmetries/clusters.hpp"
 #include "symmetries/consistency.hpp"
 #include "symmetries/pairs.hpp"
@@ -61,6 +62,7 @@ Symmetry from_pairs(const PairCluster& cluster) {
     symmetry.type = cluster.type;
     symmetry.maximal = cluster.maximal;
     symmetry.tolerance = {cluster.tolerance, std::numeric_limits<double>::infinity()};
+    symmetry.cycles.reserve(cluster.pairs.size());
     for (const Pair& p : cluster.pairs) symmetry.cycles.push_back({{p.first, p.second}, true});
     return symmetry;
 }
@@ -72,8 +74,10 @@ SymmetrySearchResult detect_symmetries(const Scene& scene, const std::vector<Cyc
     SymmetrySearchResult result;
     for (const SymmetryType type : kCycleTypes)
         if (types.contains(type)) add_of_type(scene, cycles, type, monitor, result);
-    for (const PairCluster& cluster : detect_pairs(scene, types, monitor))
-        result.symmetries.push_back(from_pairs(cluster));
+    const std::vector<PairCluster> pairs = detect_pairs(scene, types, monitor);
+    const std::size_t before = result.symmetries.size();
+    result.symmetries.resize(before + pairs.size());
+    parallel_for(pairs.size(), [&](std::size_t k) { result.symmetries[before + k] = from_pairs(pairs[k]); });
     return result;
 }
 

@@ -478,29 +478,27 @@ int PairSearch::points_on_axis(const Vector3d& middle, const Vector3d& axis, dou
 /// themselves, listed if no edge of the lowest level takes them up.
 void cluster_edges(const Scene& scene, SymmetryType type, const std::vector<PairEdge>& edges,
                    const std::vector<Pair>& lone, std::vector<PairCluster>& out) {
-    const auto key = [&](const Pair& p) {
-        return static_cast<std::size_t>(p.first) * static_cast<std::size_t>(scene.size()) +
-               static_cast<std::size_t>(p.second);
-    };
     // Number the pairs that occur, in order.
-    std::vector<std::size_t> keys;
-    keys.reserve(2 * edges.size());
-    for (const PairEdge& e : edges) {
-        keys.push_back(key(e.first));
-        keys.push_back(key(e.second));
-    }
-    std::sort(keys.begin(), keys.end());
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    const auto number = [&](const Pair& p) {
-        return std::lower_bound(keys.begin(), keys.end(), key(p)) - keys.begin();
+    constexpr int kUnknown = -1;
+    const auto n = static_cast<std::size_t>(scene.size());
+    std::vector<int> numbers(n * n, kUnknown);
+    const auto number = [&](const Pair& p) -> int& {
+        return numbers[static_cast<std::size_t>(p.first) * n + static_cast<std::size_t>(p.second)];
     };
+    for (const PairEdge& e : edges) number(e.first) = number(e.second) = 0;
+    std::vector<std::size_t> keys;
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+        if (numbers[k] == kUnknown) continue;
+        numbers[k] = static_cast<int>(keys.size());
+        keys.push_back(k);
+    }
 
     std::vector<Consistency> graph;
     graph.reserve(edges.size());
     std::vector<char> exact(keys.size(), 0);
     for (const PairEdge& e : edges) {
-        const auto first = number(e.first), second = number(e.second);
-        graph.push_back({e.tolerance, static_cast<int>(first), static_cast<int>(second), false});
+        const int first = number(e.first), second = number(e.second);
+        graph.push_back({e.tolerance, first, second, false});
         if (e.tolerance <= 2 * scene.resolution)
             exact[static_cast<std::size_t>(first)] = exact[static_cast<std::size_t>(second)] = 1;
     }
@@ -510,15 +508,14 @@ void cluster_edges(const Scene& scene, SymmetryType type, const std::vector<Pair
     for (const Cluster& c : clustering.clusters) {
         PairCluster cluster{type, c.tolerance, {}, c.maximal};
         for (const int m : c.members) {
-            const auto n = static_cast<std::size_t>(scene.size());
             const std::size_t k = keys[static_cast<std::size_t>(m)];
             cluster.pairs.push_back({static_cast<int>(k / n), static_cast<int>(k % n)});
         }
         out.push_back(std::move(cluster));
     }
     for (const Pair& p : lone) {
-        const auto at = static_cast<std::size_t>(number(p));
-        const bool known = at < keys.size() && keys[at] == key(p);
+        const bool known = number(p) != kUnknown;
+        const auto at = static_cast<std::size_t>(known ? number(p) : 0);
         if (known && exact[at] != 0) continue;
         out.push_back({type, scene.resolution, {p}, !known || clustering.clustered[at] == 0});
     }
@@ -586,10 +583,16 @@ std::vector<PairCluster> detect_pairs(const Scene& scene, TypeSet types, RunMoni
         append(all.half_turns, f.half_turns);
         f = Findings{};
     }
-    if (types.contains(SymmetryType::mirror))
-        cluster_edges(scene, SymmetryType::mirror, all.mirror_edges, all.lone_mirrors, clusters);
-    if (types.contains(central)) cluster_edges(scene, central, all.central_edges, all.lone_centres, clusters);
-    keep_largest(all.half_turns);
+    std::vector<PairCluster> mirrors, centres;
+    parallel_for(3, [&](int kind) {
+        if (kind == 0 && types.contains(SymmetryType::mirror))
+            cluster_edges(scene, SymmetryType::mirror, all.mirror_edges, all.lone_mirrors, mirrors);
+        if (kind == 1 && types.contains(central))
+            cluster_edges(scene, central, all.central_edges, all.lone_centres, centres);
+        if (kind == 2) keep_largest(all.half_turns);
+    });
+    append(clusters, mirrors);
+    append(clusters, centres);
     append(clusters, all.half_turns);
     return clusters;
 }
