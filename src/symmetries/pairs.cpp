@@ -212,7 +212,7 @@ private:
     void collect_matches();
     void examine(int q, int image, double tolerance);
     SymmetryType central_type() const { return insym::central_type(scene_.dimension()); }
-    int points_on_own_plane() const;
+    bool lone_mirror() const;
     int points_in_own_middle() const;
     void group_by_axis();
     void group_at(double level);
@@ -274,10 +274,7 @@ void PairSearch::search(int second) {
     between_known_ = false;
     matches_.clear();
     collect_matches();
-    if (types_.contains(SymmetryType::mirror)) {
-        const int fixed = points_on_own_plane();
-        if (fixed >= kLeastForLonePair || fixed + 2 == scene_.size()) out_.lone_mirrors.push_back(pair_);
-    }
+    if (types_.contains(SymmetryType::mirror) && lone_mirror()) out_.lone_mirrors.push_back(pair_);
     // A centre fixes one point at most: alone, a pair covers the set only with that point or none.
     if (types_.contains(central_type()) && scene_.size() <= 3 && points_in_own_middle() + 2 == scene_.size())
         out_.lone_centres.push_back(pair_);
@@ -340,13 +337,21 @@ void PairSearch::examine(int q, int image, double tolerance) {
         matches_.push_back({{q, image}, tolerance, w, v, fit.axis_gap});
 }
 
-/// The mirror of the pair alone moves q by |a^2 - b^2| / |P1 P2|.
-int PairSearch::points_on_own_plane() const {
+/// Does the mirror of the pair alone leave enough points in place to be listed? It moves q by
+/// |a^2 - b^2| / |P1 P2|, which is no less than |a - b|.
+bool PairSearch::lone_mirror() const {
+    const auto enough = [&](int fixed) { return fixed >= kLeastForLonePair || fixed + 2 >= scene_.size(); };
+    // Of most pairs so few points are at nearly equal distances that the steps tell, many at a time.
+    const std::uint16_t *first = steps_.row(pair_.first), *second = steps_.row(pair_.second);
+    std::uint16_t near = 0;
+    for (int q = 0; q < scene_.size(); ++q)
+        near = static_cast<std::uint16_t>(near + (static_cast<std::uint16_t>(first[q] - second[q] + 1) <= 2));
+    if (!enough(near)) return false;
     const double limit = scene_.resolution * a_[index(pair_.second)];
-    int count = 0;
+    int fixed = 0;
     for (std::size_t q = 0; q < a_.size(); ++q)
-        count += std::abs((a_[q] - b_[q]) * (a_[q] + b_[q])) <= limit ? 1 : 0;
-    return count;
+        fixed += std::abs((a_[q] - b_[q]) * (a_[q] + b_[q])) <= limit ? 1 : 0;
+    return enough(fixed);
 }
 
 int PairSearch::points_in_own_middle() const {
