@@ -21,7 +21,7 @@ constexpr int kFewVotes = 3;  // chance does as well with less
 /// point far outside (which no plane through the set comes near).
 Vector3d ballot_place(SymmetryType type, const Vector3d& a, const Vector3d& b, const Vector3d& outside) {
     if (type == SymmetryType::translation) return (b - a).dot(kAskew) < 0 ? Vector3d(a - b) : Vector3d(b - a);
-    const Vector3d middle = (a + b) / 2;
+    Vector3d middle = (a + b) / 2;
     if (type == SymmetryType::inversion || type == SymmetryType::half_turn) return middle;
     const Vector3d normal = b - a;
     return outside - normal * (2 * normal.dot(outside - middle) / normal.squaredNorm());
