@@ -24,7 +24,9 @@ Vector3d ballot_place(SymmetryType type, const Vector3d& a, const Vector3d& b, c
     Vector3d middle = (a + b) / 2;
     if (type == SymmetryType::inversion || type == SymmetryType::half_turn) return middle;
     const Vector3d normal = b - a;
-    return outside - normal * (2 * normal.dot(outside - middle) / normal.squaredNorm());
+    const double square = normal.squaredNorm();
+    if (!(square > 0)) return middle;  // too small a set for squares
+    return outside - normal * (2 * normal.dot(outside - middle) / square);
 }
 
 RigidMap map_of(SymmetryType type, const Vector3d& a, const Vector3d& b, int dimension) {
