@@ -30,6 +30,11 @@ constexpr std::size_t kMostPoints = 15000;
 
 constexpr int kMostRegions = 10000;
 
+/// Up to so many points `auto` has all pairs compared with all in method paper, which takes n^3 / 3 steps. Of
+/// larger sets it takes what is exact, where that is most of the set, so many symmetries of each kind.
+constexpr int kComparesAllPairs = 100;
+constexpr std::size_t kMostExactPairs = 250;
+
 /// Method `robust` chooses the tolerance of each symmetry itself, up to this share of the diameter.
 constexpr double kLargestTolerance = 0.1;
 
@@ -151,6 +156,19 @@ CycleSearchResult search_cycles(const Scene& scene, const DetectOptions& options
     return std::move(search);
 }
 
+/// What `auto` cut off the mirrors, inversions and half-turns.
+void tell_of_pairs(const std::vector<ExactKind>& kinds, DetectResult& result) {
+    if (kinds.empty()) return;
+    std::string counts;
+    for (const ExactKind& kind : kinds)
+        counts += (counts.empty() ? "" : ", ") + std::string(option_letter(kind.type)) + ": " +
+                  std::to_string(kind.kept) + " of " + std::to_string(kind.suggested);
+    result.diagnostics.push_back(
+        {"auto_pairs",
+         "auto kept the exact symmetries of pairs with the most pairs (" + counts +
+             " that three pairs suggest); give a tolerance to have all pairs compared with all"});
+}
+
 void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
     const auto start = std::chrono::steady_clock::now();
     CycleSearchResult search = search_cycles(scene, options, monitor, result.diagnostics);
@@ -158,7 +176,9 @@ void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& mon
     result.timing.cycles_s = seconds_since(start);
 
     const auto after_cycles = std::chrono::steady_clock::now();
-    SymmetrySearchResult found = detect_symmetries(scene, result.cycles, options.types, monitor);
+    const bool compares_all = options.max_tolerance || scene.size() <= kComparesAllPairs;
+    SymmetrySearchResult found = detect_symmetries(scene, result.cycles, options.types,
+                                                   compares_all ? 0 : kMostExactPairs, monitor);
     result.symmetries = std::move(found.symmetries);
     const Significance significance(scene);
     const Measure measure(scene, significance);
@@ -167,6 +187,7 @@ void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& mon
     rank(result.symmetries);
     result.timing.symmetries_s = seconds_since(after_cycles);
 
+    tell_of_pairs(found.exact_kinds, result);
     if (found.frustrated > 0)
         result.diagnostics.push_back(
             {"no_common_direction",

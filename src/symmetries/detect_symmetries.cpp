@@ -67,14 +67,28 @@ Symmetry from_pairs(const PairCluster& cluster) {
     return symmetry;
 }
 
+/// Where what is exact moves most of the points, what is rough besides is taken for chance.
+std::vector<PairCluster> clusters_of_pairs(const Scene& scene, TypeSet types, std::size_t most_exact,
+                                           RunMonitor& monitor, SymmetrySearchResult& result) {
+    constexpr double kMostOfThePoints = 0.5;
+    if (most_exact > 0) {
+        ExactPairs exact = detect_exact_pairs(scene, types, most_exact, monitor);
+        if (exact.share >= kMostOfThePoints) {
+            result.exact_kinds = std::move(exact.kinds);
+            return std::move(exact.clusters);
+        }
+    }
+    return detect_pairs(scene, types, monitor);
+}
+
 }  // namespace
 
 SymmetrySearchResult detect_symmetries(const Scene& scene, const std::vector<Cycle>& cycles, TypeSet types,
-                                       RunMonitor& monitor) {
+                                       std::size_t most_exact, RunMonitor& monitor) {
     SymmetrySearchResult result;
     for (const SymmetryType type : kCycleTypes)
         if (types.contains(type)) add_of_type(scene, cycles, type, monitor, result);
-    const std::vector<PairCluster> pairs = detect_pairs(scene, types, monitor);
+    const std::vector<PairCluster> pairs = clusters_of_pairs(scene, types, most_exact, monitor, result);
     const std::size_t before = result.symmetries.size();
     result.symmetries.resize(before + pairs.size());
     parallel_for(pairs.size(), [&](std::size_t k) { result.symmetries[before + k] = from_pairs(pairs[k]); });

@@ -1,0 +1,233 @@
+#include "symmetries/exact_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "hypotheses/cells.hpp"
+#include "hypotheses/generators.hpp"
+#include "isometry/fit.hpp"
+#include "parallel_for.hpp"
+#include "points/cloud.hpp"
+#include "symmetries/axis_directions.hpp"
+
+namespace insym {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr std::size_t kMostVotingPairs = 1'500'000;
+
+/// Half-turns are looked for about so many directions.
+constexpr std::size_t kDirections = 64;
+
+/// An isometry and how many pairs suggest it.
+struct Suggestion {
+    int votes;
+    RigidMap map;
+};
+
+struct Suggestions {
+    std::vector<Suggestion> best;  // most votes first
+    std::size_t all = 0;
+};
+
+RigidMap half_turn_about(const Vector3d& direction, const Vector3d& place) {
+    const Matrix3d turn = 2 * direction * direction.transpose() - Matrix3d::Identity();
+    return {turn, place - turn * place};
+}
+
+class ExactSearch {
+public:
+    ExactSearch(const PointScene& scene, std::size_t most)
+        : scene_(scene), cloud_(scene), most_(most), pairs_(all_pairs()) {}
+
+    /// The `most` with the most pairs.
+    std::vector<PairCluster> clusters(SymmetryType type, ExactKind& kind) const;
+
+private:
+    PointPairs all_pairs() const {
+        SearchGroup all(static_cast<std::size_t>(cloud_.size()));
+        std::iota(all.begin(), all.end(), 0);
+        return spread_pairs(cloud_, all, kMostVotingPairs);
+    }
+
+    std::size_t wanted() const { return most_ + most_ / 4; }  // a vote is not a pair yet
+    double cell() const { return 2 * scene_.resolution; }
+    /// Off the borders of cells, where the coordinates of aligned models lie.
+    Vector3d off_border() const { return cell() * Vector3d(0.37, 0.41, 0.43); }
+    Vector3d middle(const std::pair<int, int>& p) const { return (cloud_[p.first] + cloud_[p.second]) / 2; }
+
+    Suggestions by_votes(SymmetryType type) const;
+    Suggestions half_turns() const;
+    Suggestions half_turns_along(const Vector3d& direction) const;
+    PointPairs level_pairs(const Vector3d& direction) const;
+    PairCluster gather(SymmetryType type, const RigidMap& map) const;
+    double tolerance(const std::vector<Pair>& pairs, double deviation) const;
+
+    const PointScene& scene_;
+    Cloud cloud_;
+    std::size_t most_;
+    PointPairs pairs_;
+};
+
+/// Mirrors and centres: each pair has its own.
+Suggestions ExactSearch::by_votes(SymmetryType type) const {
+    const Vector3d outside = outside_of(cloud_), off = off_border();
+    std::vector<Ranked> cells = full_cells(pairs_.size(), cell(), [&](std::size_t k) -> Vector3d {
+        return ballot_place(type, cloud_[pairs_[k].first], cloud_[pairs_[k].second], outside) + off;
+    });
+    Suggestions out{{}, cells.size()};
+    keep_fullest(cells, wanted());
+    for (const Ranked& r : cells) {
+        const auto& [from, to] = pairs_[static_cast<std::size_t>(r.first)];
+        out.best.push_back({r.votes, fit_of_type(type, {{cloud_[from], cloud_[to]}}, cloud_.dimension())});
+    }
+    return out;
+}
+
+/// Pairs at one height along a direction: half-turns about it can exchange no others.
+PointPairs ExactSearch::level_pairs(const Vector3d& direction) const {
+    std::vector<std::pair<double, int>> heights;
+    for (int i = 0; i < cloud_.size(); ++i) heights.emplace_back(direction.dot(cloud_[i]), i);
+    std::sort(heights.begin(), heights.end());
+    PointPairs out;
+    const std::size_t most = kMostVotingPairs / kDirections;
+    for (std::size_t k = 0; k < heights.size();) {
+        SearchGroup level{heights[k].second};
+        for (++k; k < heights.size() && heights[k].first - heights[k - 1].first <= scene_.resolution / 4; ++k)
+            level.push_back(heights[k].second);
+        const PointPairs pairs = spread_pairs(cloud_, level, 8 * most);
+        out.insert(out.end(), pairs.begin(), pairs.end());
+    }
+    return out;
+}
+
+/// The axes along `direction` are the middles of these pairs as seen along it.
+Suggestions ExactSearch::half_turns_along(const Vector3d& direction) const {
+    const PointPairs pairs = level_pairs(direction);
+    const auto place = [&](std::size_t k) -> Vector3d {
+        const Vector3d m = middle(pairs[k]);
+        return m - direction * direction.dot(m);
+    };
+    const Vector3d off = off_border();
+    std::vector<Ranked> cells =
+        full_cells(pairs.size(), cell(), [&](std::size_t k) -> Vector3d { return place(k) + off; });
+    Suggestions out{{}, cells.size()};
+    keep_fullest(cells, wanted());
+    for (const Ranked& r : cells)
+        out.best.push_back({r.votes, half_turn_about(direction, place(static_cast<std::size_t>(r.first)))});
+    return out;
+}
+
+Suggestions ExactSearch::half_turns() const {
+    const std::vector<Vector3d> directions = axis_directions(cloud_, kDirections);
+    std::vector<Suggestions> along(directions.size());
+    parallel_for(directions.size(), [&](std::size_t d) { along[d] = half_turns_along(directions[d]); });
+    Suggestions out;
+    for (Suggestions& s : along) {
+        out.all += s.all;
+        out.best.insert(out.best.end(), s.best.begin(), s.best.end());
+    }
+    std::stable_sort(out.best.begin(), out.best.end(),
+                     [](const Suggestion& a, const Suggestion& b) { return a.votes > b.votes; });
+    out.best.resize(std::min(out.best.size(), wanted()));
+    return out;
+}
+
+/// All pairs that the map exchanges, each point's image the nearest of its label and the other way round, refitted
+/// once.
+PairCluster ExactSearch::gather(SymmetryType type, const RigidMap& map) const {
+    std::vector<int> image(static_cast<std::size_t>(cloud_.size()));
+    double square = 0;
+    for (int i = 0; i < cloud_.size(); ++i)
+        image[static_cast<std::size_t>(i)] =
+            cloud_.nearest(map(cloud_[i]), cloud_.label(i), 2 * scene_.resolution, square);
+    std::vector<Link> links;
+    std::vector<Pair> pairs;
+    for (int i = 0; i < cloud_.size(); ++i) {
+        const int j = image[static_cast<std::size_t>(i)];
+        if (j <= i || image[static_cast<std::size_t>(j)] != i) continue;
+        pairs.push_back({i, j});
+        links.push_back({cloud_[i], cloud_[j]});
+    }
+    PairCluster out{type, scene_.resolution, {}, true};
+    if (links.empty()) return out;
+    const RigidMap fitted = fit_of_type(type, links, cloud_.dimension());
+    double deviation = 0;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const double off = (fitted(links[k].from) - links[k].to).norm();
+        if (off > scene_.resolution) continue;
+        deviation = std::max(deviation, off);
+        out.pairs.push_back(pairs[k]);
+    }
+    out.tolerance = tolerance(out.pairs, deviation);
+    return out;
+}
+
+/// E_min: no two corresponding distances differ by more than twice the deviation.
+double ExactSearch::tolerance(const std::vector<Pair>& pairs, double deviation) const {
+    double out = scene_.resolution;
+    if (2 * deviation <= out) return out;
+    const auto distance = [&](int i, int j) { return (cloud_[i] - cloud_[j]).norm(); };
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+        for (std::size_t l = 0; l < k; ++l) {
+            const Pair &p = pairs[k], &q = pairs[l];
+            out = std::max({out, std::abs(distance(p.first, q.first) - distance(p.second, q.second)),
+                            std::abs(distance(p.first, q.second) - distance(p.second, q.first))});
+        }
+    return out;
+}
+
+std::vector<PairCluster> ExactSearch::clusters(SymmetryType type, ExactKind& kind) const {
+    const bool about_axes = type == SymmetryType::half_turn && cloud_.dimension() == 3;
+    const Suggestions suggestions = about_axes ? half_turns() : by_votes(type);
+    std::vector<PairCluster> out(suggestions.best.size());
+    parallel_for(out.size(), [&](std::size_t k) { out[k] = gather(type, suggestions.best[k].map); });
+    std::erase_if(out, [](const PairCluster& c) { return c.pairs.size() < kFewVotes; });
+    std::sort(out.begin(), out.end(), [](const PairCluster& a, const PairCluster& b) {
+        if (a.pairs.size() != b.pairs.size()) return a.pairs.size() > b.pairs.size();
+        return std::tie(a.pairs, a.tolerance) < std::tie(b.pairs, b.tolerance);
+    });
+    out.erase(std::unique(out.begin(), out.end(),
+                          [](const PairCluster& a, const PairCluster& b) { return a.pairs == b.pairs; }),
+              out.end());
+    if (out.size() > most_) out.resize(most_);
+    kind = {type, suggestions.all, out.size()};
+    return out;
+}
+
+double share_moved(const std::vector<PairCluster>& clusters, int points) {
+    std::vector<char> moved(static_cast<std::size_t>(points), 0);
+    for (const PairCluster& c : clusters)
+        for (const Pair& p : c.pairs)
+            moved[static_cast<std::size_t>(p.first)] = moved[static_cast<std::size_t>(p.second)] = 1;
+    return static_cast<double>(std::count(moved.begin(), moved.end(), 1)) / points;
+}
+
+}  // namespace
+
+ExactPairs detect_exact_pairs(const PointScene& scene, TypeSet types, std::size_t most, RunMonitor& monitor) {
+    std::vector<SymmetryType> wanted;
+    for (const SymmetryType type : {SymmetryType::mirror, SymmetryType::inversion, SymmetryType::half_turn})
+        if (types.contains(type) && !(type == SymmetryType::inversion && scene.dimension() == 2))
+            wanted.push_back(type);
+    ExactPairs out;
+    if (wanted.empty()) return out;
+    monitor.begin_stage("pairs", wanted.size());
+    const ExactSearch search(scene, most);
+    std::vector<std::vector<PairCluster>> clusters(wanted.size());
+    out.kinds.resize(wanted.size());
+    parallel_for(wanted.size(), [&](std::size_t k) {
+        if (!monitor.should_stop()) clusters[k] = search.clusters(wanted[k], out.kinds[k]);
+        monitor.advance();
+    });
+    for (std::vector<PairCluster>& found : clusters)
+        std::move(found.begin(), found.end(), std::back_inserter(out.clusters));
+    out.share = share_moved(out.clusters, scene.size());
+    return out;
+}
+
+}  // namespace insym
