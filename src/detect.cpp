@@ -177,8 +177,8 @@ void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& mon
 
     const auto after_cycles = std::chrono::steady_clock::now();
     const bool compares_all = options.max_tolerance || scene.size() <= kComparesAllPairs;
-    SymmetrySearchResult found = detect_symmetries(scene, result.cycles, options.types,
-                                                   compares_all ? 0 : kMostExactPairs, monitor);
+    SymmetrySearchResult found =
+        detect_symmetries(scene, result.cycles, options.types, compares_all ? 0 : kMostExactPairs, monitor);
     result.symmetries = std::move(found.symmetries);
     const Significance significance(scene);
     const Measure measure(scene, significance);

@@ -28,7 +28,7 @@ inline Eigen::Vector3d outside_of(const Cloud& cloud) {
 /// point far outside (which no plane through the set comes near).
 inline Eigen::Vector3d ballot_place(SymmetryType type, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                     const Eigen::Vector3d& outside) {
-    if (type == SymmetryType::translation) 
+    if (type == SymmetryType::translation)
         return (b - a).dot(kAskew) < 0 ? Eigen::Vector3d(a - b) : Eigen::Vector3d(b - a);
     Eigen::Vector3d middle = (a + b) / 2;
     if (type == SymmetryType::inversion || type == SymmetryType::half_turn) return middle;

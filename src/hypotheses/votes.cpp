@@ -22,11 +22,7 @@ RigidMap map_of(SymmetryType type, const Vector3d& a, const Vector3d& b, int dim
 class Count {
 public:
     Count(const Cloud& cloud, SymmetryType type, const PointPairs& pairs)
-        : cloud_(cloud),
-          type_(type),
-          pairs_(pairs),
-          outside_(outside_of(cloud)),
-          alive_(pairs.size()) {
+        : cloud_(cloud), type_(type), pairs_(pairs), outside_(outside_of(cloud)), alive_(pairs.size()) {
         std::iota(alive_.begin(), alive_.end(), 0);
     }
 

@@ -1,11 +1,11 @@
 #include "symmetries/axis_directions.hpp"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <map>
 #include <numeric>
+
+#include <tbb/parallel_sort.h>
 
 #include "hypotheses/places.hpp"
 
@@ -106,7 +106,8 @@ private:
 /// Of segments of one length, those with one vector together.
 std::vector<Parallel> parallels(const Cloud& cloud, const Segment* begin, const Segment* end) {
     const double resolution = cloud.scene().resolution;
-    std::vector<std::pair<double, Vector3d>> vectors;  // and how far they reach along a direction askew to all
+    std::vector<std::pair<double, Vector3d>>
+        vectors;  // and how far they reach along a direction askew to all
     for (const Segment* s = begin; s != end; ++s) {
         const Vector3d v = turned_up(cloud[s->to] - cloud[s->from]);
         vectors.emplace_back(v.dot(kOutside), v);
@@ -128,7 +129,8 @@ void suggest(const std::vector<Parallel>& equal, double shortest, Directions& ou
         const std::size_t stride = std::max<std::size_t>(1, others / kMostMates);
         for (std::size_t j = i + 1; j < equal.size(); j += stride)
             for (const Vector3d& sum : {Vector3d(v + equal[j].vector), Vector3d(v - equal[j].vector)})
-                if (sum.norm() > shortest) out.vote(sum, count * equal[j].count * static_cast<double>(stride));
+                if (sum.norm() > shortest)
+                    out.vote(sum, count * equal[j].count * static_cast<double>(stride));
     }
 }
 
@@ -139,7 +141,8 @@ std::vector<Vector3d> axis_directions(const Cloud& cloud, std::size_t most) {
     Directions directions;
     for (std::size_t k = 0; k < all.size();) {
         std::size_t end = k + 1;
-        while (end < all.size() && all[end].length - all[end - 1].length <= cloud.scene().resolution / 4) ++end;
+        while (end < all.size() && all[end].length - all[end - 1].length <= cloud.scene().resolution / 4)
+            ++end;
         if (end - k > 1)
             suggest(parallels(cloud, &all[k], all.data() + end), kShortest * cloud.radius(), directions);
         k = end;

@@ -137,8 +137,8 @@ Suggestions ExactSearch::half_turns() const {
     return out;
 }
 
-/// All pairs that the map exchanges, each point's image the nearest of its label and the other way round, refitted
-/// once.
+/// All pairs that the map exchanges, each point's image the nearest of its label and the other way round,
+/// refitted once.
 PairCluster ExactSearch::gather(SymmetryType type, const RigidMap& map) const {
     std::vector<int> image(static_cast<std::size_t>(cloud_.size()));
     double square = 0;
