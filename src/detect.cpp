@@ -30,9 +30,11 @@ constexpr std::size_t kMostPoints = 15000;
 
 constexpr int kMostRegions = 10000;
 
-/// Up to so many points `auto` has all pairs compared with all in method paper, which takes n^3 / 3 steps. Of
-/// larger sets it takes what is exact, where that is most of the set, so many symmetries of each kind.
+/// Up to so many points method paper compares all pairs with all, which takes n^3 / 3 steps.
 constexpr int kComparesAllPairs = 100;
+/// Of larger sets that are exact for the most part it takes, under `auto` and up to so many resolutions, what
+/// is exact: so many symmetries of each kind.
+constexpr double kExactUpTo = 10;
 constexpr std::size_t kMostExactPairs = 250;
 
 /// Method `robust` chooses the tolerance of each symmetry itself, up to this share of the diameter.
@@ -156,7 +158,12 @@ CycleSearchResult search_cycles(const Scene& scene, const DetectOptions& options
     return std::move(search);
 }
 
-/// What `auto` cut off the mirrors, inversions and half-turns.
+bool asks_for_exact_pairs(const PointScene& scene, const DetectOptions& options) {
+    if (scene.size() <= kComparesAllPairs) return false;
+    return !options.max_tolerance || *options.max_tolerance <= kExactUpTo * options.resolution * (1 + 1e-9);
+}
+
+/// What was cut off the mirrors, inversions and half-turns.
 void tell_of_pairs(const std::vector<ExactKind>& kinds, DetectResult& result) {
     if (kinds.empty()) return;
     std::string counts;
@@ -164,9 +171,10 @@ void tell_of_pairs(const std::vector<ExactKind>& kinds, DetectResult& result) {
         counts += (counts.empty() ? "" : ", ") + std::string(option_letter(kind.type)) + ": " +
                   std::to_string(kind.kept) + " of " + std::to_string(kind.suggested);
     result.diagnostics.push_back(
-        {"auto_pairs",
-         "auto kept the exact symmetries of pairs with the most pairs (" + counts +
-             " that three pairs suggest); give a tolerance to have all pairs compared with all"});
+        {"exact_pairs",
+         "of the exact mirrors, inversions and half-turns those with the most pairs are listed (" + counts +
+             " that three pairs suggest); a tolerance above ten resolutions has all pairs compared with "
+             "all"});
 }
 
 void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
@@ -176,9 +184,8 @@ void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& mon
     result.timing.cycles_s = seconds_since(start);
 
     const auto after_cycles = std::chrono::steady_clock::now();
-    const bool compares_all = options.max_tolerance || scene.size() <= kComparesAllPairs;
-    SymmetrySearchResult found =
-        detect_symmetries(scene, result.cycles, options.types, compares_all ? 0 : kMostExactPairs, monitor);
+    const std::size_t most_exact = asks_for_exact_pairs(scene, options) ? kMostExactPairs : 0;
+    SymmetrySearchResult found = detect_symmetries(scene, result.cycles, options.types, most_exact, monitor);
     result.symmetries = std::move(found.symmetries);
     const Significance significance(scene);
     const Measure measure(scene, significance);
