@@ -52,7 +52,7 @@ public:
 
     CycleSearchResult cycles() { return detect_cycles(scene_, monitor_); }
     std::vector<Symmetry> symmetries(const std::vector<Cycle>& cycles) {
-        return detect_symmetries(scene_, cycles, TypeSet::all(), monitor_).symmetries;
+        return detect_symmetries(scene_, cycles, TypeSet::all(), 0, monitor_).symmetries;
     }
     Measure measure() const { return {scene_, significance_}; }
 
