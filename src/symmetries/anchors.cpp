@@ -15,23 +15,11 @@ std::span<const int> inner_points(const Cycle& cycle) {
 
 }  // namespace
 
-Anchors::Anchors(const std::vector<Cycle>& cycles, int points) : place_(cycles.size(), -1) {
+Anchors::Anchors(const std::vector<Cycle>& cycles, int points)
+    : place_(cycles.size(), -1), words_each_((static_cast<std::size_t>(points) + 63) / 64) {
     choose(cycles, points);
     collect_links(cycles);
-    words_ = (static_cast<std::size_t>(points) + 63) / 64;
-    ends_.assign(points_.size() * words_, 0);
-    for (int place = 0; place < size(); ++place)
-        for (const AnchoredLink& link : links(place)) {
-            const auto bit = static_cast<std::size_t>(link.to);
-            ends_[static_cast<std::size_t>(place) * words_ + bit / 64] |= std::uint64_t{1} << (bit % 64);
-        }
-}
-
-std::span<const AnchoredLink> Anchors::links(int place, int to) const {
-    const auto all = links(place);
-    const auto before = [](const AnchoredLink& link, int end) { return link.to < end; };
-    const auto first = std::lower_bound(all.begin(), all.end(), to, before);
-    return {first, std::lower_bound(first, all.end(), to + 1, before)};
+    index_ends();
 }
 
 void Anchors::choose(const std::vector<Cycle>& cycles, int points) {
@@ -78,9 +66,20 @@ void Anchors::collect_links(const std::vector<Cycle>& cycles) {
         return std::tuple(place_of(a.cycle), a.to, a.cycle, a.reversed) <
                std::tuple(place_of(b.cycle), b.to, b.cycle, b.reversed);
     });
-    start_.assign(points_.size() + 1, 0);
-    for (const AnchoredLink& link : links_) ++start_[static_cast<std::size_t>(place_of(link.cycle)) + 1];
-    for (std::size_t k = 1; k < start_.size(); ++k) start_[k] += start_[k - 1];
+}
+
+void Anchors::index_ends() {
+    words_.resize(points_.size() * words_each_ + 1);
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+        const AnchoredLink& link = links_[k];
+        Word& word = words_[word_of(place_of(link.cycle), link.to)];
+        const std::uint64_t bit = std::uint64_t{1} << (static_cast<unsigned>(link.to) % 64U);
+        if ((word.bits & bit) == 0) start_.push_back(k);
+        word.bits |= bit;
+    }
+    start_.push_back(links_.size());
+    for (std::size_t w = 1; w < words_.size(); ++w)
+        words_[w].ends_before = words_[w - 1].ends_before + std::popcount(words_[w - 1].bits);
 }
 
 }  // namespace insym

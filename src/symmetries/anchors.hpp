@@ -3,6 +3,8 @@
 
 #include "insym/detect.hpp"
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,30 +31,50 @@ public:
     int place_of(int cycle) const { return place_[static_cast<std::size_t>(cycle)]; }
     int point(int place) const { return points_[static_cast<std::size_t>(place)]; }
 
-    /// All that start at an anchor, by end, cycle and direction.
-    std::span<const AnchoredLink> links(int place) const {
-        const auto k = static_cast<std::size_t>(place);
-        return {links_.data() + start_[k], start_[k + 1] - start_[k]};
-    }
-    /// Those of them that end at `to`.
-    std::span<const AnchoredLink> links(int place, int to) const;
+    /// How many points the links from an anchor end at.
+    int ends(int place) const { return first_end(place + 1) - first_end(place); }
 
-    /// Whether there are any; O(1).
-    bool has_link(int place, int to) const {
-        const auto bit = static_cast<std::size_t>(to);
-        return (ends_[static_cast<std::size_t>(place) * words_ + bit / 64] >> (bit % 64) & 1U) != 0;
+    /// Calls visit(to, links) for each point at which links from the anchor end.
+    template <class Visit>
+    void visit_ends(int place, Visit visit) const {
+        for (int e = first_end(place); e < first_end(place + 1); ++e)
+            visit(links_of(e).front().to, links_of(e));
+    }
+
+    /// The links from the anchor to a point, by cycle and direction; O(1).
+    std::span<const AnchoredLink> links(int place, int to) const {
+        const Word& word = words_[word_of(place, to)];
+        const std::uint64_t bit = std::uint64_t{1} << (static_cast<unsigned>(to) % 64U);
+        if ((word.bits & bit) == 0) return {};
+        return links_of(word.ends_before + std::popcount(word.bits & (bit - 1)));
     }
 
 private:
+    /// Which of 64 points are ends of links from an anchor.
+    struct Word {
+        std::uint64_t bits = 0;
+        int ends_before = 0;
+    };
+
     void choose(const std::vector<Cycle>& cycles, int points);
     void collect_links(const std::vector<Cycle>& cycles);
+    void index_ends();
+
+    std::size_t word_of(int place, int point) const {
+        return static_cast<std::size_t>(place) * words_each_ + static_cast<std::size_t>(point) / 64;
+    }
+    int first_end(int place) const { return words_[word_of(place, 0)].ends_before; }
+    std::span<const AnchoredLink> links_of(int end) const {
+        const std::size_t first = start_[static_cast<std::size_t>(end)];
+        return {links_.data() + first, start_[static_cast<std::size_t>(end) + 1] - first};
+    }
 
     std::vector<int> points_;
-    std::vector<int> place_;  // of each cycle's anchor in points_
-    std::vector<AnchoredLink> links_;
-    std::vector<std::size_t> start_;   // of each anchor's in links_, and the end
-    std::size_t words_ = 0;            // of ends_ for each anchor
-    std::vector<std::uint64_t> ends_;  // a bit for each point
+    std::vector<int> place_;           // of each cycle's anchor in points_
+    std::vector<AnchoredLink> links_;  // by anchor, end, cycle and direction
+    std::vector<std::size_t> start_;   // of each anchor's each end in links_, and the end of all
+    std::size_t words_each_ = 0;
+    std::vector<Word> words_;  // of each anchor, and one more
 };
 
 }  // namespace insym

@@ -134,7 +134,8 @@ struct Union {
     int other = 0;
     bool reversed = false;
     double tolerance = 0;
-    double miss[2] = {0, 0};  // of the cycle's own isometry of either determinant, over the links of both
+    // Of the cycle's own isometries, proper and improper, over the links of both.
+    std::array<double, 2> miss{kInfinity, kInfinity};
 };
 
 /// Finds the partners of one cycle among those whose anchors come before its own.
@@ -181,24 +182,23 @@ private:
     void collect_candidates() {
         for (int place = 0; place < all_.anchors.place_of(cycle_); ++place) {
             const int from = all_.anchors.point(place);
-            const double d = scene_.distances(p_.point(0), from);
-            const auto ask = [&](int to) {
-                const auto links = all_.anchors.links(place, to);
-                if (carries_link(from, to))
-                    for (const AnchoredLink& link : links) unions_.push_back({link.cycle, link.reversed});
-                return links.size();
+            const auto ask = [&](int to, std::span<const AnchoredLink> links) {
+                if (!carries_link(from, to)) return;
+                for (const AnchoredLink& link : links) unions_.push_back({link.cycle, link.reversed});
             };
-            // Whichever are fewer: the points as far from the second point as that, or the ends of links.
-            const auto links = all_.anchors.links(place);
-            if (static_cast<double>(links.size()) > kShell + scene_.size() * limit_ / scene_.diameter) {
-                scene_.distances.visit_shell(p_.point(1), d - limit_ - all_.rounding,
-                                             d + limit_ + all_.rounding, [&](int to, double) {
-                                                 if (all_.anchors.has_link(place, to)) ask(to);
-                                                 return true;
-                                             });
-            } else {
-                for (std::size_t k = 0; k < links.size();) k += ask(links[k].to);
+            // Whichever are fewer: the ends of links, or the points as far from the second as the anchor is
+            // from the first.
+            if (all_.anchors.ends(place) < kShell + scene_.size() * limit_ / scene_.diameter) {
+                all_.anchors.visit_ends(place, ask);
+                continue;
             }
+            const double d = scene_.distances(p_.point(0), from);
+            const double reach = limit_ + all_.rounding;
+            scene_.distances.visit_shell(p_.point(1), d - reach, d + reach, [&](int to, double) {
+                const auto links = all_.anchors.links(place, to);
+                if (!links.empty()) ask(to, links);
+                return true;
+            });
         }
     }
 
@@ -228,10 +228,10 @@ private:
         const double top = std::min(p_.cycle.tolerance.max, q.cycle.tolerance.max);
         const double own = std::max(p_.cycle.tolerance.min, q.cycle.tolerance.min);
         if (own >= top || !disjoint(q)) return false;
-        if (!own_) own_ = fit_own();
-        for (const bool improper : {false, true}) {
-            const Own& map = (*own_)[improper ? 1 : 0];
-            u.miss[improper ? 1 : 0] = std::max(map.miss, all_.miss(map.map, q));
+        if (exact()) {
+            if (!own_) own_ = fit_own();
+            for (std::size_t k = 0; k < 2; ++k)
+                u.miss[k] = std::max((*own_)[k].miss, all_.miss((*own_)[k].map, q));
         }
         // An isometry that misses no link by more than m changes a distance by at most 2m in each step, so
         // that a cross orbit spreads by less than this.
@@ -241,6 +241,9 @@ private:
         u.tolerance = bound <= own ? own : std::max(own, CrossOrbits(scene_, p_, q, limit).largest_spread());
         return u.tolerance < top && u.tolerance <= scene_.max_tolerance;
     }
+
+    /// What is not exact has no isometry that misses so little that it says anything.
+    bool exact() const { return p_.cycle.tolerance.min <= scene_.resolution; }
 
     struct Own {
         RigidMap map;
@@ -268,10 +271,11 @@ private:
         LinkSums sums = all_.sums(first);
         sums += u.reversed ? all_.sums(second).reversed() : all_.sums(second);
         // The largest miss of a least-squares fit is at most the root of the sum of all squares.
-        const double most[2] = {std::sqrt(sums.count) * u.miss[0] + all_.rounding,
-                                std::sqrt(sums.count) * u.miss[1] + all_.rounding};
-        if (most[improper ? 1 : 0] <= scene_.resolution) return true;
-        if (least_miss(sums, improper) > 2 * most[improper ? 0 : 1] + scene_.resolution + all_.rounding)
+        const auto most = [&](bool of_improper) {
+            return std::sqrt(sums.count) * u.miss[of_improper ? 1 : 0] + all_.rounding;
+        };
+        if (most(improper) <= scene_.resolution) return true;
+        if (2 * most(!improper) + scene_.resolution + all_.rounding < least_miss(sums, improper))
             return false;
         const RigidFits fits = fit_rigid(sums, 3);
         const Strand p{all_.cycle(first)}, q{all_.cycle(second), u.reversed};
