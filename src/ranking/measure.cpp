@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "isometry/describe.hpp"
 #include "isometry/fit.hpp"
@@ -21,7 +22,10 @@ void for_each_link(const Symmetry& symmetry, Visit visit) {
 }  // namespace
 
 Measure::Measure(const PointScene& scene, const Significance& significance)
-    : scene_(scene), grid_(scene.points.positions), significance_(significance) {}
+    : scene_(scene),
+      grid_(scene.points.positions),
+      near_(scene.points.positions),
+      significance_(significance) {}
 
 void Measure::complete(Symmetry& symmetry) const {
     fit(symmetry);
@@ -68,9 +72,17 @@ void Measure::cover(Symmetry& symmetry) const {
     const double reach = exact_reach + std::max(5e-7 * exact_reach, 1e-5 * scene_.resolution);
     std::vector<char> linked(scene_.points.size(), 0);
     for_each_link(symmetry, [&](int from, int) { linked[static_cast<std::size_t>(from)] = 1; });
+    // Most images lie where no point is; where a link ends there is one.
+    std::vector<int> near;
+    if (reach <= near_.largest_reach()) {
+        near_.images_near(symmetry.isometry, near);
+    } else {
+        near.resize(scene_.points.size());
+        std::iota(near.begin(), near.end(), 0);
+    }
     int covered = 0;
     symmetry.fixed_points.clear();
-    for (int i = 0; i < scene_.size(); ++i) {
+    for (const int i : near) {
         const Point& p = scene_.position(i);
         const Point image = symmetry.isometry.apply(p);
         if ((to_vector(image) - to_vector(p)).squaredNorm() <= reach * reach) {

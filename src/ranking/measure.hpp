@@ -1,6 +1,7 @@
 // What every symmetry carries (definitions, section 7): isometry, deviation, coverage, fixed points.
 #pragma once
 
+#include "points/near_cells.hpp"
 #include "points/point_grid.hpp"
 #include "ranking/significance.hpp"
 #include "scene.hpp"
@@ -26,6 +27,7 @@ private:
 
     const PointScene& scene_;
     PointGrid grid_;
+    NearCells near_;
     const Significance& significance_;
 };
 
