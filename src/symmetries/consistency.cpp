@@ -146,7 +146,9 @@ public:
           scene_(all.scene),
           cycle_(cycle),
           p_{all.cycle(cycle)},
-          limit_(std::min(scene_.max_tolerance, p_.cycle.tolerance.max)) {}
+          limit_(std::min(scene_.max_tolerance, p_.cycle.tolerance.max)) {
+        for (const int point : p_.cycle.points) rows_.push_back(scene_.distances.row(point).data());
+    }
 
     /// Calls found(type, consistency).
     template <class Found>
@@ -192,7 +194,7 @@ private:
                 all_.anchors.visit_ends(place, ask);
                 continue;
             }
-            const double d = scene_.distances(p_.point(0), from);
+            const double d = distance(0, from);
             const double reach = limit_ + all_.rounding;
             scene_.distances.visit_shell(p_.point(1), d - reach, d + reach, [&](int to, double) {
                 const auto links = all_.anchors.links(place, to);
@@ -203,16 +205,17 @@ private:
     }
 
     bool carries_link(int from, int to) const {
-        const auto d_from = scene_.distances.row(from);
-        const auto d_to = scene_.distances.row(to);
         for (int k = 0; k < p_.links(); ++k) {
-            const int here = p_.point(k), there = p_.point(p_.next(k));
+            const int here = p_.point(k), next = p_.next(k), there = p_.point(next);
             if (here == from || there == to) return false;  // not disjoint
-            if (std::abs(d_from[static_cast<std::size_t>(here)] - d_to[static_cast<std::size_t>(there)]) >
-                limit_)
-                return false;
+            if (std::abs(distance(k, from) - distance(next, to)) > limit_) return false;
         }
         return true;
+    }
+
+    /// Of the k-th point of the cycle, whose row of distances stays in the cache.
+    double distance(int k, int point) const {
+        return rows_[static_cast<std::size_t>(k)][static_cast<std::size_t>(point)];
     }
 
     bool disjoint(const Strand& q) const {
@@ -305,6 +308,7 @@ private:
     int cycle_;
     Strand p_;
     double limit_;
+    std::vector<const double*> rows_;  // of distances, for each point of the cycle
     std::vector<Union> unions_;
     std::optional<OwnMaps> own_;
 };
