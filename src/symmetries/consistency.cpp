@@ -270,14 +270,15 @@ private:
     bool has_type(const Union& u, SymmetryType type) const {
         if (scene_.dimension() == 2) return true;
         const bool improper = is_improper(type, 3);
+        const Strand other{all_.cycle(u.other), u.reversed};
+        // The largest miss of a least-squares fit is at most the root of the sum of all squares.
+        const auto most = [&](bool of_improper) {
+            return std::sqrt(p_.links() + other.links()) * u.miss[of_improper ? 1 : 0] + all_.rounding;
+        };
+        if (most(improper) <= scene_.resolution) return true;
         const int first = std::min(cycle_, u.other), second = std::max(cycle_, u.other);
         LinkSums sums = all_.sums(first);
         sums += u.reversed ? all_.sums(second).reversed() : all_.sums(second);
-        // The largest miss of a least-squares fit is at most the root of the sum of all squares.
-        const auto most = [&](bool of_improper) {
-            return std::sqrt(sums.count) * u.miss[of_improper ? 1 : 0] + all_.rounding;
-        };
-        if (most(improper) <= scene_.resolution) return true;
         if (2 * most(!improper) + scene_.resolution + all_.rounding < least_miss(sums, improper))
             return false;
         const RigidFits fits = fit_rigid(sums, 3);
@@ -318,25 +319,26 @@ struct TypedConsistency {
     Consistency pair;
 };
 
-/// Those of one type, in order of (first, second).
-std::vector<Consistency> of_type(SymmetryType type, const std::vector<std::vector<TypedConsistency>>& found) {
-    std::vector<std::size_t> next(found.size() + 1, 0);
-    const auto for_each = [&](const auto& visit) {
-        for (const auto& part : found)
-            for (const TypedConsistency& c : part)
-                if (c.type == type) visit(c.pair);
-    };
-    for_each([&](const Consistency& c) { ++next[static_cast<std::size_t>(c.first) + 1]; });
-    for (std::size_t k = 1; k < next.size(); ++k) next[k] += next[k - 1];
-    std::vector<Consistency> out(next.back());
-    std::vector<std::size_t> start(next.begin(), next.end());
-    for_each([&](const Consistency& c) { out[next[static_cast<std::size_t>(c.first)]++] = c; });
+/// Each type's in order of (first, second).
+ConsistentPairs in_order(const std::vector<std::vector<TypedConsistency>>& found) {
+    std::vector<std::size_t> start(found.size() + 1, 0);
+    for (const auto& part : found)
+        for (const TypedConsistency& c : part) ++start[static_cast<std::size_t>(c.pair.first) + 1];
+    for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
+    std::vector<TypedConsistency> all(start.back());
+    std::vector<std::size_t> next(start.begin(), start.end() - 1);
+    for (const auto& part : found)
+        for (const TypedConsistency& c : part) all[next[static_cast<std::size_t>(c.pair.first)]++] = c;
     parallel_for(found.size(), [&](std::size_t k) {
-        std::sort(out.begin() + static_cast<std::ptrdiff_t>(start[k]),
-                  out.begin() + static_cast<std::ptrdiff_t>(start[k + 1]),
-                  [](const Consistency& a, const Consistency& b) { return a.second < b.second; });
+        std::sort(all.begin() + static_cast<std::ptrdiff_t>(start[k]),
+                  all.begin() + static_cast<std::ptrdiff_t>(start[k + 1]),
+                  [](const TypedConsistency& a, const TypedConsistency& b) {
+                      return std::tie(a.pair.second, a.type) < std::tie(b.pair.second, b.type);
+                  });
     });
-    return out;
+    ConsistentPairs pairs;
+    for (const TypedConsistency& c : all) pairs[static_cast<std::size_t>(c.type)].push_back(c.pair);
+    return pairs;
 }
 
 }  // namespace
@@ -354,10 +356,7 @@ ConsistentPairs consistent_cycles(const Scene& scene, const std::vector<Cycle>& 
                 });
         monitor.advance();
     });
-    ConsistentPairs pairs;
-    for (const SymmetryType type : kAllSymmetryTypes)
-        if (types.contains(type)) pairs[static_cast<std::size_t>(type)] = of_type(type, found);
-    return pairs;
+    return in_order(found);
 }
 
 }  // namespace insym
