@@ -17,9 +17,17 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// What the search needs of a cycle, those of all cycles one after another.
+struct Member {
+    std::span<const int> points;
+    ToleranceInterval tolerance;
+    TypeSet types;
+    bool closed = false;
+};
+
 /// A cycle read in one of its two directions.
 struct Strand {
-    const Cycle& cycle;
+    const Member& cycle;
     bool reversed = false;
 
     int size() const { return static_cast<int>(cycle.points.size()); }
@@ -91,18 +99,24 @@ private:
 /// What all searches of a run look at; immutable.
 class Strands {
 public:
-    Strands(const Scene& points, const std::vector<Cycle>& all)
-        : scene(points), cycles(all), anchors(all, points.size()), rounding(1e-12 * points.diameter) {
+    Strands(const Scene& points, const std::vector<Cycle>& cycles)
+        : scene(points), anchors(cycles, points.size()), rounding(1e-12 * points.diameter) {
+        for (const Cycle& c : cycles) points_.insert(points_.end(), c.points.begin(), c.points.end());
+        const int* next = points_.data();
+        for (const Cycle& c : cycles) {
+            members_.push_back({{next, c.points.size()}, c.tolerance, c.types, c.closed});
+            next += c.points.size();
+        }
         Eigen::Vector3d centre = Eigen::Vector3d::Zero();
         for (const Point& p : scene.points.positions) centre += to_vector(p) / scene.size();
         centred_.reserve(scene.points.size());
         for (const Point& p : scene.points.positions) centred_.emplace_back(to_vector(p) - centre);
         sums_.resize(cycles.size());
         for (std::size_t c = 0; c < cycles.size(); ++c)
-            for_each_link({cycles[c]}, [&](const auto& from, const auto& to) { sums_[c].add({from, to}); });
+            for_each_link({members_[c]}, [&](const auto& from, const auto& to) { sums_[c].add({from, to}); });
     }
 
-    const Cycle& cycle(int c) const { return cycles[static_cast<std::size_t>(c)]; }
+    const Member& cycle(int c) const { return members_[static_cast<std::size_t>(c)]; }
     const LinkSums& sums(int c) const { return sums_[static_cast<std::size_t>(c)]; }
 
     /// Calls visit(from, to) with the places of all links, relative to the centroid of the set.
@@ -120,11 +134,12 @@ public:
     }
 
     const Scene& scene;
-    const std::vector<Cycle>& cycles;
     const Anchors anchors;
     const double rounding;  // more than all that is computed here can be off by
 
 private:
+    std::vector<int> points_;
+    std::vector<Member> members_;
     std::vector<Eigen::Vector3d> centred_;
     std::vector<LinkSums> sums_;
 };
