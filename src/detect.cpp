@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
@@ -111,7 +112,9 @@ bool listed(const Symmetry& s) {
 
 /// Past the deadline the largest are measured, and it is said how many more there were.
 void measure_largest_first(const Measure& measure, RunMonitor& monitor, DetectResult& result) {
-    constexpr std::size_t kAlways = 2000, kBlock = 512;
+    constexpr std::size_t kAlways = 2000, kLeastBlock = 512, kImages = 40'000'000;
+    // So that a block takes some tenths of a second at most.
+    const std::size_t block = std::max(kLeastBlock, kImages / result.points.size());
     std::vector<Symmetry>& all = result.symmetries;
     std::vector<std::pair<std::size_t, std::size_t>> sizes;  // points moved, and place
     for (std::size_t k = 0; k < all.size(); ++k) {
@@ -127,11 +130,10 @@ void measure_largest_first(const Measure& measure, RunMonitor& monitor, DetectRe
     all.swap(sorted);
     std::size_t done = 0;
     while (done < all.size() && (done < kAlways || !monitor.should_stop())) {
-        const std::size_t end = std::min(all.size(), done + kBlock);
-        parallel_for(end - done, [&](std::size_t i) {
-            Symmetry& s = all[done + i];
-            measure.complete(s);
-            s.significance = measure.significance_of(s);
+        const std::size_t end = std::min(all.size(), done + block);
+        measure.complete_all(std::span(all).subspan(done, end - done));
+        parallel_for(end - done, [&](std::size_t k) {
+            all[done + k].significance = measure.significance_of(all[done + k]);
         });
         done = end;
     }

@@ -3,19 +3,31 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
+#include <tuple>
 
 #include "cycles/tolerance_interval.hpp"
 #include "isometry/fit.hpp"
 #include "parallel_for.hpp"
+#include "symmetries/anchors.hpp"
 
 namespace insym {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// What the search needs of a cycle, those of all cycles one after another.
+struct Member {
+    std::span<const int> points;
+    ToleranceInterval tolerance;
+    TypeSet types;
+    bool closed = false;
+};
+
 /// A cycle read in one of its two directions.
 struct Strand {
-    const Cycle& cycle;
+    const Member& cycle;
     bool reversed = false;
 
     int size() const { return static_cast<int>(cycle.points.size()); }
@@ -70,187 +82,296 @@ private:
     double worst_ = 0;
 };
 
-/// The links at which the strands of all members start, by their first point: a strand can belong to
-/// a cycle's symmetry only if that cycle carries its first link, whichever strands share it.
-class StartLinks {
+/// The largest distance by which a map misses the end of a link.
+class Miss {
 public:
-    struct Start {
-        int from;
-        int to;
-        int member;
-        bool reversed;
-    };
+    explicit Miss(const RigidMap& map) : map_(map) {}
+    void include(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+        square_ = std::max(square_, (map_(from) - to).squaredNorm());
+    }
+    double largest() const { return std::sqrt(square_); }
 
-    explicit StartLinks(const std::vector<const Cycle*>& members) {
-        for (int m = 0; m < static_cast<int>(members.size()); ++m)
-            for (const bool reversed : {false, true}) {
-                const Strand s{*members[static_cast<std::size_t>(m)], reversed};
-                starts_.push_back({s.point(0), s.point(1), m, reversed});
-            }
-        std::sort(starts_.begin(), starts_.end(), [](const Start& a, const Start& b) {
-            return std::tie(a.from, a.to, a.member, a.reversed) <
-                   std::tie(b.from, b.to, b.member, b.reversed);
-        });
-        for (const Start& start : starts_) {
-            if (links_.empty() || links_.back().from != start.from || links_.back().to != start.to)
-                links_.push_back({start.from, start.to, 0, start.member});
-            ++links_.back().count;
-            links_.back().last_member = std::max(links_.back().last_member, start.member);
+private:
+    const RigidMap& map_;
+    double square_ = 0;
+};
+
+/// What all searches of a run look at; immutable.
+class Strands {
+public:
+    Strands(const Scene& points, const std::vector<Cycle>& cycles)
+        : scene(points), anchors(cycles, points.size()), rounding(1e-12 * points.diameter) {
+        for (const Cycle& c : cycles) points_.insert(points_.end(), c.points.begin(), c.points.end());
+        const int* next = points_.data();
+        for (const Cycle& c : cycles) {
+            members_.push_back({{next, c.points.size()}, c.tolerance, c.types, c.closed});
+            next += c.points.size();
         }
+        Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+        for (const Point& p : scene.points.positions) centre += to_vector(p) / scene.size();
+        centred_.reserve(scene.points.size());
+        for (const Point& p : scene.points.positions) centred_.emplace_back(to_vector(p) - centre);
+        sums_.resize(cycles.size());
+        for (std::size_t c = 0; c < cycles.size(); ++c)
+            for_each_link({members_[c]}, [&](const auto& from, const auto& to) { sums_[c].add({from, to}); });
     }
 
-    /// Calls visit(start) for all strands of members after `first` whose first link passes `carried`.
-    template <class Carried, class Visit>
-    void visit_carried(int first, Carried carried, Visit visit) const {
-        std::size_t k = 0;
-        for (const DistinctLink& link : links_) {
-            const std::size_t end = k + static_cast<std::size_t>(link.count);
-            if (link.last_member > first && carried(link.from, link.to))
-                for (std::size_t i = k; i < end; ++i)
-                    if (starts_[i].member > first) visit(starts_[i]);
+    const Member& cycle(int c) const { return members_[static_cast<std::size_t>(c)]; }
+    const LinkSums& sums(int c) const { return sums_[static_cast<std::size_t>(c)]; }
+
+    /// Calls visit(from, to) with the places of all links, relative to the centroid of the set.
+    template <class Visit>
+    void for_each_link(const Strand& s, Visit visit) const {
+        for (int k = 0; k < s.links(); ++k)
+            visit(centred_[static_cast<std::size_t>(s.point(k))],
+                  centred_[static_cast<std::size_t>(s.point(s.next(k)))]);
+    }
+
+    double miss(const RigidMap& map, const Strand& s) const {
+        Miss miss(map);
+        for_each_link(s, [&](const auto& from, const auto& to) { miss.include(from, to); });
+        return miss.largest();
+    }
+
+    const Scene& scene;
+    const Anchors anchors;
+    const double rounding;  // more than all that is computed here can be off by
+
+private:
+    std::vector<int> points_;
+    std::vector<Member> members_;
+    std::vector<Eigen::Vector3d> centred_;
+    std::vector<LinkSums> sums_;
+};
+
+/// Two strands as one: a cycle, and another in one of its directions.
+struct Union {
+    int other = 0;
+    bool reversed = false;
+    double tolerance = 0;
+    // Of the cycle's own isometries, proper and improper, over the links of both.
+    std::array<double, 2> miss{kInfinity, kInfinity};
+};
+
+/// Finds the partners of one cycle among those whose anchors come before its own.
+class PartnerSearch {
+public:
+    PartnerSearch(const Strands& all, int cycle)
+        : all_(all),
+          scene_(all.scene),
+          cycle_(cycle),
+          p_{all.cycle(cycle)},
+          limit_(std::min(scene_.max_tolerance, p_.cycle.tolerance.max)) {
+        for (const int point : p_.cycle.points) rows_.push_back(scene_.distances.row(point).data());
+    }
+
+    /// Calls found(type, consistency).
+    template <class Found>
+    void visit_partners(TypeSet types, Found found) {
+        collect_candidates();
+        std::sort(unions_.begin(), unions_.end(), [](const Union& a, const Union& b) {
+            return std::tie(a.other, a.reversed) < std::tie(b.other, b.reversed);
+        });
+        std::erase_if(unions_, [&](Union& u) { return !measure(u); });
+        // The better of the two directions first, the given one where they are equal.
+        std::sort(unions_.begin(), unions_.end(), [](const Union& a, const Union& b) {
+            return std::tie(a.other, a.tolerance, a.reversed) < std::tie(b.other, b.tolerance, b.reversed);
+        });
+        for (std::size_t k = 0; k < unions_.size();) {
+            std::size_t end = k + 1;
+            while (end < unions_.size() && unions_[end].other == unions_[k].other) ++end;
+            const TypeSet common = types & p_.cycle.types & all_.cycle(unions_[k].other).types;
+            for (const SymmetryType type : kAllSymmetryTypes) {
+                if (!common.contains(type)) continue;
+                const auto best = std::find_if(unions_.begin() + static_cast<std::ptrdiff_t>(k),
+                                               unions_.begin() + static_cast<std::ptrdiff_t>(end),
+                                               [&](const Union& u) { return has_type(u, type); });
+                if (best == unions_.begin() + static_cast<std::ptrdiff_t>(end)) continue;
+                found(type, Consistency{best->tolerance, std::min(cycle_, best->other),
+                                        std::max(cycle_, best->other), best->reversed});
+            }
             k = end;
         }
     }
 
 private:
-    struct DistinctLink {
-        int from;
-        int to;
-        int count;  // how many of starts_, one after another
-        int last_member;
-    };
-
-    std::vector<Start> starts_;
-    std::vector<DistinctLink> links_;
-};
-
-/// What the type check of a union needs of each member.
-struct MemberLinks {
-    std::vector<Link> links;
-    LinkSums sums;
-};
-
-/// Finds the partners of one cycle after another; shared, immutable.
-class PartnerSearch {
-public:
-    PartnerSearch(const Scene& scene, const std::vector<const Cycle*>& members, SymmetryType type)
-        : scene_(scene), members_(members), type_(type), starts_(members), member_links_(members.size()) {
-        Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-        for (const Point& p : scene.points.positions) centre += to_vector(p) / scene.size();
-        for (std::size_t m = 0; m < members.size(); ++m) {
-            const Strand s{*members[m]};
-            for (int k = 0; k < s.links(); ++k) {
-                const Link link{to_vector(scene.position(s.point(k))) - centre,
-                                to_vector(scene.position(s.point(s.next(k)))) - centre};
-                member_links_[m].links.push_back(link);
-                member_links_[m].sums.add(link);
+    /// A partner carries every link of this cycle, and is carried by it, so also the one at its anchor.
+    void collect_candidates() {
+        for (int place = 0; place < all_.anchors.place_of(cycle_); ++place) {
+            const int from = all_.anchors.point(place);
+            const auto ask = [&](int to, std::span<const AnchoredLink> links) {
+                if (!carries_link(from, to)) return;
+                for (const AnchoredLink& link : links) unions_.push_back({link.cycle, link.reversed});
+            };
+            // Whichever are fewer: the ends of links, or the points as far from the second as the anchor is
+            // from the first.
+            if (all_.anchors.ends(place) < kShell + scene_.size() * limit_ / scene_.diameter) {
+                all_.anchors.visit_ends(place, ask);
+                continue;
             }
+            const double d = distance(0, from);
+            const double reach = limit_ + all_.rounding;
+            scene_.distances.visit_shell(p_.point(1), d - reach, d + reach, [&](int to, double) {
+                const auto links = all_.anchors.links(place, to);
+                if (!links.empty()) ask(to, links);
+                return true;
+            });
         }
     }
 
-    void partners_of(int first, std::vector<Consistency>& out) const {
-        const Strand p{*members_[static_cast<std::size_t>(first)]};
-        const double limit = std::min(scene_.max_tolerance, p.cycle.tolerance.max);
-        std::vector<Consistency> passed;
-        // Most fail at its first link; that one is asked of all in a tight loop.
-        const auto d_here = scene_.distances.row(p.point(0));
-        const auto d_there = scene_.distances.row(p.point(1));
-        const auto carried = [&](int from, int to) {
-            return std::abs(d_here[static_cast<std::size_t>(from)] - d_there[static_cast<std::size_t>(to)]) <=
-                       limit &&
-                   carries_link(p, from, to, limit);
-        };
-        starts_.visit_carried(first, carried, [&](const StartLinks::Start& start) {
-            const double tolerance =
-                union_tolerance(p, {*members_[static_cast<std::size_t>(start.member)], start.reversed});
-            if (tolerance < kInfinity) passed.push_back({tolerance, first, start.member, start.reversed});
-        });
-        // The better of the two directions of each second cycle, the given one where they are equal.
-        std::sort(passed.begin(), passed.end(), [](const Consistency& a, const Consistency& b) {
-            return std::tie(a.second, a.tolerance, a.reversed) < std::tie(b.second, b.tolerance, b.reversed);
-        });
-        int last = -1;
-        for (const Consistency& c : passed) {
-            if (c.second == last) continue;
-            if (scene_.dimension() == 3 && !union_has_type(c)) continue;
-            last = c.second;
-            out.push_back(c);
-        }
-    }
-
-private:
-    bool carries_link(const Strand& p, int from, int to, double limit) const {
-        const auto d_from = scene_.distances.row(from);
-        const auto d_to = scene_.distances.row(to);
-        for (int k = 0; k < p.links(); ++k) {
-            const int here = p.point(k), there = p.point(p.next(k));
+    bool carries_link(int from, int to) const {
+        for (int k = 0; k < p_.links(); ++k) {
+            const int here = p_.point(k), next = p_.next(k), there = p_.point(next);
             if (here == from || there == to) return false;  // not disjoint
-            if (std::abs(d_from[static_cast<std::size_t>(here)] - d_to[static_cast<std::size_t>(there)]) >
-                limit)
-                return false;
+            if (std::abs(distance(k, from) - distance(next, to)) > limit_) return false;
         }
         return true;
     }
 
-    static bool disjoint(const Strand& p, const Strand& q) {
+    /// Of the k-th point of the cycle, whose row of distances stays in the cache.
+    double distance(int k, int point) const {
+        return rows_[static_cast<std::size_t>(k)][static_cast<std::size_t>(point)];
+    }
+
+    bool disjoint(const Strand& q) const {
         return std::none_of(q.cycle.points.begin(), q.cycle.points.end(), [&](int i) {
-            return std::find(p.cycle.points.begin(), p.cycle.points.end(), i) != p.cycle.points.end();
+            return std::find(p_.cycle.points.begin(), p_.cycle.points.end(), i) != p_.cycle.points.end();
         });
     }
 
-    /// E_min of the union where it is below its E_max and max_tolerance, else infinity.
-    double union_tolerance(const Strand& p, const Strand& q) const {
-        if (p.cycle.closed && q.cycle.closed && p.size() != q.size()) return kInfinity;
-        const double top = std::min(p.cycle.tolerance.max, q.cycle.tolerance.max);
-        const double own = std::max(p.cycle.tolerance.min, q.cycle.tolerance.min);
-        if (own >= top || !disjoint(p, q)) return kInfinity;
+    /// Sets E_min of the union; false where it is not below its E_max, or above max_tolerance.
+    bool measure(Union& u) {
+        const Strand q{all_.cycle(u.other), u.reversed};
+        if (p_.cycle.closed && q.cycle.closed && p_.size() != q.size()) return false;
+        const double top = std::min(p_.cycle.tolerance.max, q.cycle.tolerance.max);
+        const double own = std::max(p_.cycle.tolerance.min, q.cycle.tolerance.min);
+        if (own >= top || !disjoint(q)) return false;
+        if (exact()) {
+            if (!own_) own_ = fit_own();
+            for (std::size_t k = 0; k < 2; ++k)
+                u.miss[k] = std::max((*own_)[k].miss, all_.miss((*own_)[k].map, q));
+        }
+        // An isometry that misses no link by more than m changes a distance by at most 2m in each step, so
+        // that a cross orbit spreads by less than this.
+        const double bound =
+            2 * std::min(u.miss[0], u.miss[1]) * std::max(p_.size(), q.size()) + all_.rounding;
         const double limit = std::min(top, scene_.max_tolerance);
-        const double tolerance = std::max(own, CrossOrbits(scene_, p, q, limit).largest_spread());
-        return tolerance < top && tolerance <= scene_.max_tolerance ? tolerance : kInfinity;
+        u.tolerance = bound <= own ? own : std::max(own, CrossOrbits(scene_, p_, q, limit).largest_spread());
+        return u.tolerance < top && u.tolerance <= scene_.max_tolerance;
+    }
+
+    /// What is not exact has no isometry that misses so little that it says anything.
+    bool exact() const { return p_.cycle.tolerance.min <= scene_.resolution; }
+
+    struct Own {
+        RigidMap map;
+        double miss = 0;
+    };
+    using OwnMaps = std::array<Own, 2>;
+
+    /// An isometry of either determinant for this cycle. A row fixes no turn about itself; a row's symmetry
+    /// is most often a translation.
+    OwnMaps fit_own() const {
+        const LinkSums& sums = all_.sums(cycle_);
+        RigidFits fits = fit_rigid(sums, 3);
+        if (p_.cycle.types.contains(SymmetryType::translation))
+            fits.proper = {Eigen::Matrix3d::Identity(), (sums.to - sums.from) / sums.count};
+        return {Own{fits.proper, all_.miss(fits.proper, p_)},
+                Own{fits.improper, all_.miss(fits.improper, p_)}};
     }
 
     /// The isometry of the type's determinant carries the links of both at most twice as far off as
     /// the other determinant's (`carries` of the reference).
-    bool union_has_type(const Consistency& c) const {
-        const MemberLinks& p = member_links_[static_cast<std::size_t>(c.first)];
-        const MemberLinks& q = member_links_[static_cast<std::size_t>(c.second)];
-        LinkSums sums = p.sums;
-        sums += c.reversed ? q.sums.reversed() : q.sums;
-        const RigidFits fits = fit_rigid(sums, 3);
-        const auto worst = [&](const RigidMap& map) {
-            double square = 0;
-            for (const Link& l : p.links) square = std::max(square, (map(l.from) - l.to).squaredNorm());
-            for (const Link& l : q.links)
-                square =
-                    std::max(square, (c.reversed ? map(l.to) - l.from : map(l.from) - l.to).squaredNorm());
-            return std::sqrt(square);
+    bool has_type(const Union& u, SymmetryType type) const {
+        if (scene_.dimension() == 2) return true;
+        const bool improper = is_improper(type, 3);
+        const Strand other{all_.cycle(u.other), u.reversed};
+        // The largest miss of a least-squares fit is at most the root of the sum of all squares.
+        const auto most = [&](bool of_improper) {
+            return std::sqrt(p_.links() + other.links()) * u.miss[of_improper ? 1 : 0] + all_.rounding;
         };
-        const double proper = worst(fits.proper), improper = worst(fits.improper);
-        const double own = is_improper(type_, 3) ? improper : proper;
-        return own <= 2 * std::min(proper, improper) + scene_.resolution;
+        if (most(improper) <= scene_.resolution) return true;
+        const int first = std::min(cycle_, u.other), second = std::max(cycle_, u.other);
+        LinkSums sums = all_.sums(first);
+        sums += u.reversed ? all_.sums(second).reversed() : all_.sums(second);
+        if (2 * most(!improper) + scene_.resolution + all_.rounding < least_miss(sums, improper))
+            return false;
+        const RigidFits fits = fit_rigid(sums, 3);
+        const Strand p{all_.cycle(first)}, q{all_.cycle(second), u.reversed};
+        const auto worst = [&](const RigidMap& map) {
+            return std::max(all_.miss(map, p), all_.miss(map, q));
+        };
+        const double proper_miss = worst(fits.proper), improper_miss = worst(fits.improper);
+        return (improper ? improper_miss : proper_miss) <=
+               2 * std::min(proper_miss, improper_miss) + scene_.resolution;
     }
 
+    /// No isometry of this determinant misses all links by less. With the singular values s1 >= s2 >= s3 of
+    /// the covariance, whose determinant has the other sign, the squares sum up to 4 s3 more than for the
+    /// other determinant, and s3 = |det| / (s1 s2) >= 2 |det| / (s1^2 + s2^2 + s3^2).
+    double least_miss(const LinkSums& sums, bool improper) const {
+        const Eigen::Matrix3d h = sums.covariance();
+        const double det = h.determinant(), square = h.squaredNorm();
+        if ((det < 0) == improper || !(square > 0)) return 0;
+        const double rounding = scene_.diameter * all_.rounding / 10;
+        return std::sqrt(std::max(0.0, 8 * std::abs(det) / (square * sums.count) - rounding));
+    }
+
+    static constexpr double kShell = 8;  // points in a narrow shell, about
+
+    const Strands& all_;
     const Scene& scene_;
-    const std::vector<const Cycle*>& members_;
-    SymmetryType type_;
-    StartLinks starts_;
-    std::vector<MemberLinks> member_links_;
+    int cycle_;
+    Strand p_;
+    double limit_;
+    std::vector<const double*> rows_;  // of distances, for each point of the cycle
+    std::vector<Union> unions_;
+    std::optional<OwnMaps> own_;
 };
+
+struct TypedConsistency {
+    SymmetryType type;
+    Consistency pair;
+};
+
+/// Each type's in order of (first, second).
+ConsistentPairs in_order(const std::vector<std::vector<TypedConsistency>>& found) {
+    std::vector<std::size_t> start(found.size() + 1, 0);
+    for (const auto& part : found)
+        for (const TypedConsistency& c : part) ++start[static_cast<std::size_t>(c.pair.first) + 1];
+    for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
+    std::vector<TypedConsistency> all(start.back());
+    std::vector<std::size_t> next(start.begin(), start.end() - 1);
+    for (const auto& part : found)
+        for (const TypedConsistency& c : part) all[next[static_cast<std::size_t>(c.pair.first)]++] = c;
+    parallel_for(found.size(), [&](std::size_t k) {
+        std::sort(all.begin() + static_cast<std::ptrdiff_t>(start[k]),
+                  all.begin() + static_cast<std::ptrdiff_t>(start[k + 1]),
+                  [](const TypedConsistency& a, const TypedConsistency& b) {
+                      return std::tie(a.pair.second, a.type) < std::tie(b.pair.second, b.type);
+                  });
+    });
+    ConsistentPairs pairs;
+    for (const TypedConsistency& c : all) pairs[static_cast<std::size_t>(c.type)].push_back(c.pair);
+    return pairs;
+}
 
 }  // namespace
 
-std::vector<Consistency> consistent_cycles(const Scene& scene, const std::vector<const Cycle*>& members,
-                                           SymmetryType type, RunMonitor& monitor) {
-    const PartnerSearch search(scene, members, type);
-    std::vector<std::vector<Consistency>> found(members.size());
-    monitor.begin_stage("consistency", members.size());
-    parallel_for(members.size(), [&](std::size_t first) {
-        if (!monitor.should_stop()) search.partners_of(static_cast<int>(first), found[first]);
+ConsistentPairs consistent_cycles(const Scene& scene, const std::vector<Cycle>& cycles, TypeSet types,
+                                  RunMonitor& monitor) {
+    const Strands all(scene, cycles);
+    std::vector<std::vector<TypedConsistency>> found(cycles.size());
+    monitor.begin_stage("consistency", cycles.size());
+    parallel_for(cycles.size(), [&](std::size_t c) {
+        if (!monitor.should_stop())
+            PartnerSearch(all, static_cast<int>(c))
+                .visit_partners(types, [&](SymmetryType type, const Consistency& pair) {
+                    found[c].push_back({type, pair});
+                });
         monitor.advance();
     });
-    std::vector<Consistency> all;
-    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
-    return all;
+    return in_order(found);
 }
 
 }  // namespace insym

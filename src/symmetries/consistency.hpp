@@ -1,6 +1,7 @@
 // Which cycles of one type can belong to one symmetry (definitions, section 6).
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "run_monitor.hpp"
@@ -8,7 +9,7 @@
 
 namespace insym {
 
-/// Two consistent members of a list, and E_min of their union.
+/// Two consistent cycles of a list, and E_min of their union.
 struct Consistency {
     double tolerance = 0;
     int first = 0;
@@ -16,9 +17,12 @@ struct Consistency {
     bool reversed = false;  ///< the second runs backwards in the union
 };
 
-/// All consistent pairs among `members`, cycles that all have type `type`, in order of (first,
-/// second). Parallel over the first. O(members x distinct end links), plus the pairs that pass.
-std::vector<Consistency> consistent_cycles(const Scene& scene, const std::vector<const Cycle*>& members,
-                                           SymmetryType type, RunMonitor& monitor);
+/// The consistent pairs of each type, at the type's value, in order of (first, second).
+using ConsistentPairs = std::array<std::vector<Consistency>, kAllSymmetryTypes.size()>;
+
+/// All consistent pairs among `cycles` for each of the wanted `types`. Parallel over the cycles. For each a
+/// shell of points about every anchor up to its own, plus the pairs that pass.
+ConsistentPairs consistent_cycles(const Scene& scene, const std::vector<Cycle>& cycles, TypeSet types,
+                                  RunMonitor& monitor);
 
 }  // namespace insym

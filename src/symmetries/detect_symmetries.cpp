@@ -39,18 +39,26 @@ Symmetry from_cluster(SymmetryType type, const Cluster& cluster, const std::vect
     return symmetry;
 }
 
-void add_of_type(const Scene& scene, const std::vector<Cycle>& cycles, SymmetryType type, RunMonitor& monitor,
-                 SymmetrySearchResult& result) {
+/// `pairs`: the consistent ones of the type, by their places among all cycles.
+void add_of_type(const std::vector<Cycle>& cycles, SymmetryType type, std::vector<Consistency> pairs,
+                 double resolution, SymmetrySearchResult& result) {
     std::vector<const Cycle*> members;
-    for (const Cycle& c : cycles)
-        if (c.types.contains(type)) members.push_back(&c);
-    if (members.empty()) return;
+    std::vector<int> place(cycles.size(), -1);
+    for (std::size_t c = 0; c < cycles.size(); ++c)
+        if (cycles[c].types.contains(type)) {
+            place[c] = static_cast<int>(members.size());
+            members.push_back(&cycles[c]);
+        }
+    for (Consistency& pair : pairs) {
+        pair.first = place[static_cast<std::size_t>(pair.first)];
+        pair.second = place[static_cast<std::size_t>(pair.second)];
+    }
 
     std::vector<double> tolerance_max;
     tolerance_max.reserve(members.size());
     for (const Cycle* c : members) tolerance_max.push_back(c->tolerance.max);
-    const Clustering clustering = complete_components(
-        members.size(), consistent_cycles(scene, members, type, monitor), tolerance_max, scene.resolution);
+    const Clustering clustering =
+        complete_components(members.size(), std::move(pairs), tolerance_max, resolution);
     result.frustrated += clustering.frustrated;
     for (std::size_t m = 0; m < members.size(); ++m)
         result.symmetries.push_back(from_cycle(type, *members[m], clustering.clustered[m] == 0));
@@ -86,8 +94,11 @@ std::vector<PairCluster> clusters_of_pairs(const Scene& scene, TypeSet types, st
 SymmetrySearchResult detect_symmetries(const Scene& scene, const std::vector<Cycle>& cycles, TypeSet types,
                                        std::size_t most_exact, RunMonitor& monitor) {
     SymmetrySearchResult result;
+    ConsistentPairs consistent = consistent_cycles(scene, cycles, types, monitor);
     for (const SymmetryType type : kCycleTypes)
-        if (types.contains(type)) add_of_type(scene, cycles, type, monitor, result);
+        if (types.contains(type))
+            add_of_type(cycles, type, std::move(consistent[static_cast<std::size_t>(type)]), scene.resolution,
+                        result);
     const std::vector<PairCluster> pairs = clusters_of_pairs(scene, types, most_exact, monitor, result);
     const std::size_t before = result.symmetries.size();
     result.symmetries.resize(before + pairs.size());
