@@ -195,7 +195,11 @@ void Expansion::resolve_seeds(int apex) {
         if (apex < a)
             if (const double closed = oracle_.tolerance(seed, true); closed <= scene_.max_tolerance)
                 resolve_closed(seed, Fingerprint(seed, true), closed);
-        if (failed_.contains(a, apex, c) || failed_.contains(c, apex, a)) resolve_open(seed, tolerance);
+        const bool alone = fourths_.none(a, apex, c) && fourths_.none(c, apex, a);
+        // Where nothing can be added the types are all that counts, and quicker to ask than C2.
+        if (alone && type_oracle_.types(seed, false, tolerance).empty()) return;
+        if (alone || failed_.contains(a, apex, c) || failed_.contains(c, apex, a))
+            resolve_open(seed, tolerance);
     });
 }
 

@@ -128,7 +128,7 @@ const Candidate* Fourths::of(int a, int b, int c, List& scratch) const {
 SeedLink Fourths::link(int a, int b, int c) const {
     if (!stored_) return kUnknownLink;
     const Slot* slot = find(a, b, c);
-    return slot == nullptr ? 0 : slot->first;
+    return slot == nullptr ? kEmpty : slot->first;
 }
 
 std::ptrdiff_t Fourths::seed(int a, int b, int c) const {
