@@ -81,7 +81,8 @@ private:
         List fourths;
     };
 
-    void build(int b, RunMonitor& monitor);
+    class Mates;
+    void build(int b, const Mates& mates, RunMonitor& monitor);
     void link_seeds(int b);
     void fill_table(Apex& apex, const std::vector<Slot>& seeds) const;
     const Slot* find(int a, int b, int c) const;
