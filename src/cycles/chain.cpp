@@ -311,17 +311,12 @@ void ChainOracle::collect_extremes(std::span<const int> points, bool closed) {
 
 bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double eps) {
     const std::size_t c = points.size();
-    const auto place_of = [&](int p) {
-        std::size_t place = c;
-        for (std::size_t k = 0; k < c; ++k) place = points[k] == p ? k : place;
-        return place;
-    };
-    // What could be replaced the last time often can again, by the same point: most chains end here.
+    // What could replace a point the last time often can again: most chains end here.
     extremes_.clear();
-    const std::size_t last = place_of(replaced_);
-    if (last < c && scene_.label(replaced_by_) == scene_.label(replaced_) &&
-        fits_in_place(points, closed, last, replaced_by_, eps))
-        return false;
+    for (std::size_t k = 0; k < c; ++k)
+        if (const int q = replaced_by_[static_cast<std::size_t>(points[k])];
+            q >= 0 && fits_in_place(points, closed, k, q, eps))
+            return false;
     if (c > kShortSequence) {
         collect_extremes(points, closed);
         left_out_ = c;
@@ -384,8 +379,7 @@ bool ChainOracle::fits_in_place(std::span<const int> points, bool closed, std::s
                                         ? short_interval_with(points, closed, at, q, eps)
                                         : long_interval_with(points, closed, at, q, eps);
     if (!(other.min <= eps && eps < other.max)) return false;
-    replaced_ = points[at];
-    replaced_by_ = q;
+    replaced_by_[static_cast<std::size_t>(points[at])] = q;
     return true;
 }
 
