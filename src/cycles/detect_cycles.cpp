@@ -233,9 +233,13 @@ bool Expansion::expand_four(std::span<const int> four, double tolerance, std::ar
     for (const End end : {End::right, End::left})
         for (const Candidate& fifth : end == End::left ? lefts : rights)
             if (fifth.point >= 0) memo_.prefetch(chain_.fingerprint_with(fifth.point, end));
+    const Ends best{*std::min_element(lefts.begin(), lefts.end()),
+                    *std::min_element(rights.begin(), rights.end())};
     four_alone_.reset();
-    bool found = follow_path(tolerance, Ends{*std::min_element(lefts.begin(), lefts.end()),
-                                             *std::min_element(rights.begin(), rights.end())});
+    // As with seeds; `four` is in canonical form.
+    if (best.first.point < 0 && best.second.point < 0 && type_oracle_.types(four, false, tolerance).empty())
+        four_alone_ = false;
+    bool found = follow_path(tolerance, best);
     if (scene_.dimension() != 3) return found;
     for (const End end : {End::right, End::left})
         for (const Candidate& fifth : end == End::left ? lefts : rights) {
