@@ -311,24 +311,20 @@ void ChainOracle::collect_extremes(std::span<const int> points, bool closed) {
 
 bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double eps) {
     const std::size_t c = points.size();
-    const auto place_of = [&](int p) {
-        std::size_t place = c;
-        for (std::size_t k = 0; k < c; ++k) place = points[k] == p ? k : place;
-        return place;
-    };
-    // What could be replaced the last time often can again, by the same point: most chains end here.
+    // What could replace a point the last time often can again: most chains end here.
     extremes_.clear();
-    const std::size_t last = place_of(replaced_);
-    if (last < c && scene_.label(replaced_by_) == scene_.label(replaced_) &&
-        fits_in_place(points, closed, last, replaced_by_, eps))
-        return false;
+    for (std::size_t k = 0; k < c; ++k)
+        if (const int q = replaced_by_[static_cast<std::size_t>(points[k])];
+            q >= 0 && fits_in_place(points, closed, k, q, eps))
+            return false;
     if (c > kShortSequence) {
         collect_extremes(points, closed);
         left_out_ = c;
     }
-    // From the ends inwards: there the distances say least.
+    // From the ends inwards: there the distances say least. The last first: what can replace the fourth point
+    // of a chain that was made of three is where it came from.
     for (std::size_t k = 0; k < c; ++k)
-        if (replaceable(points, closed, k % 2 == 0 ? k / 2 : c - 1 - k / 2, eps)) return false;
+        if (replaceable(points, closed, k % 2 == 0 ? c - 1 - k / 2 : k / 2, eps)) return false;
     return true;
 }
 
@@ -351,7 +347,9 @@ bool ChainOracle::replaceable(std::span<const int> points, bool closed, std::siz
 bool ChainOracle::replaceable_from_shell(std::span<const int> points, bool closed, std::size_t at,
                                          double eps) {
     const std::size_t c = points.size();
-    const int neighbour = at + 1 < c ? points[at + 1] : points[at - 1];
+    // In the middle of a chain the one farther from its end, which many chains have in common.
+    const bool in_last_half = at + 1 == c || (c > 3 && 2 * at >= c);
+    const int neighbour = in_last_half ? points[at - 1] : points[at + 1];
     const double usual = scene_.distances(points[at], neighbour);
     // The other links of the sequence bound it, too.
     Span links;
@@ -373,10 +371,9 @@ bool ChainOracle::replaceable_from_shell(std::span<const int> points, bool close
 
 /// Can the outside point q stand in the place `at`, with the tolerance eps valid?
 bool ChainOracle::fits_in_place(std::span<const int> points, bool closed, std::size_t at, int q, double eps) {
-    const auto d = scene_.distances.row(q);
-    const std::size_t neighbour = at + 1 < points.size() ? at + 1 : at - 1;
-    const double usual = scene_.distances(points[at], points[neighbour]);
-    if (std::abs(d[static_cast<std::size_t>(points[neighbour])] - usual) > 2 * eps) return false;
+    const int neighbour = points[at + 1 < points.size() ? at + 1 : at - 1];
+    const double usual = scene_.distances(points[at], neighbour);
+    if (std::abs(scene_.distances(neighbour, q) - usual) > 2 * eps) return false;
     bool inside = false;
     for (const int p : points) inside |= p == q;
     if (inside) return false;
@@ -384,8 +381,7 @@ bool ChainOracle::fits_in_place(std::span<const int> points, bool closed, std::s
                                         ? short_interval_with(points, closed, at, q, eps)
                                         : long_interval_with(points, closed, at, q, eps);
     if (!(other.min <= eps && eps < other.max)) return false;
-    replaced_ = points[at];
-    replaced_by_ = q;
+    replaced_by_[static_cast<std::size_t>(points[at])] = q;
     return true;
 }
 

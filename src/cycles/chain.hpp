@@ -90,7 +90,8 @@ private:
 /// each thread.
 class ChainOracle {
 public:
-    ChainOracle(const Scene& scene, const Fourths& fourths) : scene_(scene), fourths_(fourths) {}
+    ChainOracle(const Scene& scene, const Fourths& fourths)
+        : scene_(scene), fourths_(fourths), replaced_by_(static_cast<std::size_t>(scene.size()), -1) {}
 
     const Scene& scene() const { return scene_; }
 
@@ -147,10 +148,9 @@ private:
     std::vector<Span> spans_;
     std::vector<Extremes> extremes_;  // of the sequence at hand, once they are asked for
     std::vector<int> replaced_sequence_;
-    std::size_t left_out_ = 0;  // the place of a point
-    std::vector<Span> rest_;    // the orbits without the distances of that point
-    int replaced_ = -1;         // the point that could be replaced the last time
-    int replaced_by_ = 0;       // and what by
+    std::size_t left_out_ = 0;      // the place of a point
+    std::vector<Span> rest_;        // the orbits without the distances of that point
+    std::vector<int> replaced_by_;  // of each point: what could replace it the last time, or -1
 };
 
 }  // namespace insym

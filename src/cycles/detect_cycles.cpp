@@ -77,8 +77,17 @@ public:
     std::vector<std::pair<CanonicalCycle, TypeSet>>& found() { return found_; }
 
 private:
+    /// (a, apex, c) with a < c.
+    struct Seed {
+        int a;
+        int c;
+        Span links;
+        double ends;       // |a c|
+        double tolerance;  // E_min
+    };
     template <class Visit>
     void visit_seeds(int apex, Visit visit);
+    bool may_be_on_line(const Seed& seed) const;
     bool expand_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links);
     using Ends = std::pair<Candidate, Candidate>;  // the best candidates at the left and at the right end
     bool follow_path(double tolerance, std::optional<Ends> ends = {});
@@ -144,8 +153,8 @@ private:
     std::vector<std::pair<CanonicalCycle, TypeSet>> found_;
 };
 
-/// Calls visit(a, c, E_min) for every seed (a, apex, c) with a < c: a and c are at nearly the same distance,
-/// so each a looks only at the few that follow it in the list by distance.
+/// Calls visit(seed) for every seed about `apex`: a and c are at nearly the same distance, so each looks only
+/// at the few that follow it in the list by distance.
 template <class Visit>
 void Expansion::visit_seeds(int apex, Visit visit) {
     const auto d = scene_.distances.row(apex);
@@ -154,13 +163,16 @@ void Expansion::visit_seeds(int apex, Visit visit) {
         if (scene_.label(others[i]) != scene_.label(apex)) continue;
         if (monitor_.should_stop()) return;
         const double near = d[static_cast<std::size_t>(others[i])];
+        const auto to_first = scene_.distances.row(others[i]);
         for (std::size_t j = i + 1; j < others.size(); ++j) {
             const double far = d[static_cast<std::size_t>(others[j])];
             if (far - near > scene_.max_tolerance) break;
+            if (scene_.label(others[j]) != scene_.label(apex)) continue;
             const auto [a, c] = std::minmax(others[i], others[j]);
-            const int seed[] = {a, apex, c};
-            const double tolerance = oracle_.tolerance(seed, false);
-            if (tolerance <= scene_.max_tolerance) visit(a, c, tolerance);
+            Seed seed{a, c, {near, far}, to_first[static_cast<std::size_t>(others[j])], 0};
+            const Span orbits[] = {seed.links, {seed.ends, seed.ends}};
+            seed.tolerance = tolerance_interval(orbits, scene_.resolution, scene_.max_tolerance).min;
+            if (seed.tolerance <= scene_.max_tolerance) visit(seed);
         }
     }
 }
@@ -179,24 +191,36 @@ void Expansion::expand_fours(int apex) {
             failed_.add(d.point, c, apex);
         }
     };
-    visit_seeds(apex, [&](int a, int c, double) {
+    visit_seeds(apex, [&](const Seed& seed) {
         ++seeds_;
-        expand(a, c);
-        expand(c, a);
+        expand(seed.a, seed.c);
+        expand(seed.c, seed.a);
     });
 }
 
 /// A path on which nothing is unambiguous and has a type falls back to the chain of four and then to the
 /// seed.
 void Expansion::resolve_seeds(int apex) {
-    visit_seeds(apex, [&](int a, int c, double tolerance) {
-        const int seed[] = {a, apex, c};
+    visit_seeds(apex, [&](const Seed& seed) {
+        const auto [a, c, links, ends, tolerance] = seed;
+        const int points[] = {a, apex, c};
         // An equilateral triangle closes at once; it is met from all three apexes.
-        if (apex < a)
-            if (const double closed = oracle_.tolerance(seed, true); closed <= scene_.max_tolerance)
-                resolve_closed(seed, Fingerprint(seed, true), closed);
-        if (failed_.contains(a, apex, c) || failed_.contains(c, apex, a)) resolve_open(seed, tolerance);
+        Span ring = links;
+        ring.include(ends);
+        if (apex < a && ring.spread() <= scene_.max_tolerance)
+            resolve_closed(points, Fingerprint(points, true), std::max(ring.spread(), scene_.resolution));
+        const bool alone = fourths_.none(a, apex, c) && fourths_.none(c, apex, a);
+        // Where nothing can be added it must be on a line: quicker to ask than C2.
+        if (alone && !may_be_on_line(seed)) return;
+        if (alone || failed_.contains(a, apex, c) || failed_.contains(c, apex, a))
+            resolve_open(points, tolerance);
     });
+}
+
+/// With room for rounding: the types decide.
+bool Expansion::may_be_on_line(const Seed& seed) const {
+    const double slack = seed.tolerance * (1 + 1e-6) + 1e-9 * scene_.diameter;
+    return seed.ends / 2 >= seed.links.high - slack && seed.ends / 2 <= seed.links.low + slack;
 }
 
 /// In 3D also branches over the best fifth point at either end on each side of the plane of the three
@@ -209,9 +233,13 @@ bool Expansion::expand_four(std::span<const int> four, double tolerance, std::ar
     for (const End end : {End::right, End::left})
         for (const Candidate& fifth : end == End::left ? lefts : rights)
             if (fifth.point >= 0) memo_.prefetch(chain_.fingerprint_with(fifth.point, end));
+    const Ends best{*std::min_element(lefts.begin(), lefts.end()),
+                    *std::min_element(rights.begin(), rights.end())};
     four_alone_.reset();
-    bool found = follow_path(tolerance, Ends{*std::min_element(lefts.begin(), lefts.end()),
-                                             *std::min_element(rights.begin(), rights.end())});
+    // As with seeds; `four` is in canonical form.
+    if (best.first.point < 0 && best.second.point < 0 && type_oracle_.types(four, false, tolerance).empty())
+        four_alone_ = false;
+    bool found = follow_path(tolerance, best);
     if (scene_.dimension() != 3) return found;
     for (const End end : {End::right, End::left})
         for (const Candidate& fifth : end == End::left ? lefts : rights) {

@@ -18,6 +18,11 @@ double tolerance_of_four(const Span& links, const Span& steps, double ends, doub
     return tolerance_interval(spans, floor, limit).min;
 }
 
+/// How much two distances of one orbit may differ. The exact test decides; rounding here must lose nothing.
+double reach_of(const Scene& scene) {
+    return scene.max_tolerance + 1e-12 * scene.diameter;
+}
+
 /// One end of a chain of four: the point, its distance to its neighbour and to the point after that.
 struct Wing {
     double far = 0;
@@ -31,7 +36,7 @@ void wings(const Scene& scene, int from, int apex, std::vector<Wing>& out) {
     out.clear();
     const double link = scene.distances(from, apex);
     const auto to_from = scene.distances.row(from);
-    const double reach = scene.max_tolerance + 1e-12 * scene.diameter;
+    const double reach = reach_of(scene);
     scene.distances.visit_shell(apex, link - reach, link + reach, [&](int q, double near) {
         if (q != from && scene.label(q) == scene.label(apex))
             out.push_back({to_from[static_cast<std::size_t>(q)], near, q});
@@ -42,12 +47,46 @@ void wings(const Scene& scene, int from, int apex, std::vector<Wing>& out) {
 
 }  // namespace
 
+/// Bits, for the loops over all pairs to ask them in the cache, where the rows of distances do not fit.
+class Fourths::Mates {
+public:
+    explicit Mates(const Scene& scene)
+        : width_((static_cast<std::size_t>(scene.size()) + 63) / 64),
+          bits_(width_ * static_cast<std::size_t>(scene.size())) {
+        parallel_for(scene.size(), [&](int apex) { find(scene, apex); });
+    }
+
+    /// Has `apex` another point of its label as far off as `p`?
+    bool has(int apex, int p) const { return (word(apex, p) >> (p & 63) & 1) != 0; }
+
+private:
+    void find(const Scene& scene, int apex) {
+        const auto d = scene.distances.row(apex);
+        int last = -1;
+        for (const int p : scene.distances.nearest_first(apex)) {
+            if (scene.label(p) != scene.label(apex)) continue;
+            if (last >= 0 &&
+                d[static_cast<std::size_t>(p)] - d[static_cast<std::size_t>(last)] <= reach_of(scene))
+                for (const int mate : {last, p}) bits_[place(apex, mate)] |= std::uint64_t{1} << (mate & 63);
+            last = p;
+        }
+    }
+    std::size_t place(int apex, int p) const {
+        return static_cast<std::size_t>(apex) * width_ + static_cast<std::size_t>(p) / 64;
+    }
+    std::uint64_t word(int apex, int p) const { return bits_[place(apex, p)]; }
+
+    std::size_t width_;
+    std::vector<std::uint64_t> bits_;
+};
+
 Fourths::Fourths(const Scene& scene, RunMonitor& monitor)
     : scene_(scene), stored_(true), apexes_(static_cast<std::size_t>(scene.size())) {
+    const Mates mates(scene);
     std::atomic<std::size_t> stored{0};
     parallel_for(scene.size(), [&](int b) {
         if (stored.load(std::memory_order_relaxed) > kMostStored) return;
-        build(b, monitor);
+        build(b, mates, monitor);
         stored += apexes_[static_cast<std::size_t>(b)].fourths.size();
     });
     if (stored > kMostStored || monitor.should_stop()) {
@@ -61,18 +100,16 @@ Fourths::Fourths(const Scene& scene, RunMonitor& monitor)
     }
 }
 
-void Fourths::build(int b, RunMonitor& monitor) {
+void Fourths::build(int b, const Mates& mates, RunMonitor& monitor) {
     Apex& apex = apexes_[static_cast<std::size_t>(b)];
     std::vector<Slot> seeds;
     std::vector<Wing> left, right;
     apex.fourths.push_back(kNobody);
-    // The exact test decides; rounding here must lose nothing.
-    const double reach = scene_.max_tolerance + 1e-12 * scene_.diameter;
+    const double reach = reach_of(scene_);
     for (int c = 0; c < scene_.size(); ++c) {
-        if (c == b || scene_.label(c) != scene_.label(b)) continue;
+        if (!mates.has(b, c) || !mates.has(c, b)) continue;
         if (apex.fourths.size() > kMostStored || monitor.should_stop()) return;
         wings(scene_, c, b, left);
-        if (left.empty()) continue;
         wings(scene_, b, c, right);
         const double link = scene_.distances(b, c);
         std::size_t first = 0;
@@ -128,7 +165,7 @@ const Candidate* Fourths::of(int a, int b, int c, List& scratch) const {
 SeedLink Fourths::link(int a, int b, int c) const {
     if (!stored_) return kUnknownLink;
     const Slot* slot = find(a, b, c);
-    return slot == nullptr ? 0 : slot->first;
+    return slot == nullptr ? kEmpty : slot->first;
 }
 
 std::ptrdiff_t Fourths::seed(int a, int b, int c) const {
@@ -151,7 +188,7 @@ void Fourths::make(int a, int b, int c, List& list) const {
     list.assign(1, kNobody);
     const auto& d = scene_.distances;
     if (scene_.label(a) != scene_.label(b) || scene_.label(c) != scene_.label(b)) return;
-    const double slack = scene_.max_tolerance + 1e-12 * scene_.diameter;
+    const double slack = reach_of(scene_);
     Span links{d(a, b), d(a, b)};
     links.include(d(b, c));
     d.visit_shell(c, links.high - slack, links.low + slack, [&](int q, double near) {

@@ -55,6 +55,9 @@ public:
     /// Where they are stored, if they are.
     SeedLink link(int a, int b, int c) const;
 
+    /// Is it known that there are none?
+    bool none(int a, int b, int c) const { return link(a, b, c) == kEmpty; }
+
     /// The number of the seed (a, b, c), one way round, in [0, seeds()); -1 if it has no fourth points or if
     /// nothing is stored.
     std::ptrdiff_t seed(int a, int b, int c) const;
@@ -63,6 +66,7 @@ public:
     static constexpr Candidate kNobody{std::numeric_limits<double>::infinity(), -1};
 
 private:
+    static constexpr SeedLink kEmpty = 0;                             // an empty list, the first of each apex
     static constexpr std::size_t kMostStored = std::size_t{1} << 25;  // of 16 bytes
 
     /// The seeds (a, b, c) with one b: an open hash table over (a, c).
@@ -74,10 +78,11 @@ private:
     struct Apex {
         std::vector<Slot> slots;  // a power of two, or none
         std::size_t first = 0;    // the number of the first slot
-        List fourths;             // begins with an empty list, for all other seeds
+        List fourths;
     };
 
-    void build(int b, RunMonitor& monitor);
+    class Mates;
+    void build(int b, const Mates& mates, RunMonitor& monitor);
     void link_seeds(int b);
     void fill_table(Apex& apex, const std::vector<Slot>& seeds) const;
     const Slot* find(int a, int b, int c) const;

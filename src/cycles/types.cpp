@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "cycles/tolerance_interval.hpp"
+
 namespace insym {
 namespace {
 
@@ -66,10 +68,10 @@ TypeSet TypeOracle::types(std::span<const int> points, bool closed, double eps) 
     TypeSet found;
     if (!closed && c >= kLeastLine && near_line()) found.insert(SymmetryType::translation);
     if (!found.empty() || c < kLeastRing) return found;  // a line explains it already
+    if (!closed && (c < kLeastArc || (c == kLeastArc && !four_may_be_flat()))) return found;
 
     find_plane();
     find_turns();
-    is_flat_ = eps >= flatness_change();
     if (one_way_ && c >= (closed ? kLeastRing : kLeastArc) && near_circle(closed))
         found.insert(SymmetryType::rotation);
     if (!found.empty()) return found;
@@ -79,9 +81,8 @@ TypeSet TypeOracle::types(std::span<const int> points, bool closed, double eps) 
         if (scene_.dimension() == 3) found.insert(SymmetryType::screw);
         return found;
     }
-    if (is_flat_ || scene_.dimension() == 2) return found;
     const bool long_enough = closed ? c >= kLeastAlternatingRing && c % 2 == 0 : c >= kLeastHelix;
-    if (!long_enough) return found;
+    if (!long_enough || scene_.dimension() == 2 || eps >= flatness_change()) return found;
     const RigidFits step = fit_step(closed);
     if (!closed && near_helix(step.proper))
         found.insert(SymmetryType::screw);
@@ -108,6 +109,25 @@ bool TypeOracle::near_line() {
             if (std::abs(ideal - dist_[i * c + j]) > eps_) return false;
         }
     return true;
+}
+
+/// Can four points be close to an ideal arc or zigzag? There the distance of the ends follows from link and
+/// step, on a circle by Ptolemy, ends * link = step^2 - link^2, in a zigzag by parallelograms, ends^2 =
+/// link^2 + 2 step^2; each may be off by the tolerance.
+bool TypeOracle::four_may_be_flat() const {
+    const auto d = [&](std::size_t i, std::size_t j) { return dist_[i * 4 + j]; };
+    const double slack = eps_ + 1e-9 * scene_.diameter;
+    const auto ideal = [&](std::initializer_list<double> measured) {
+        return Span{std::max(measured) - slack, std::min(measured) + slack};
+    };
+    const Span link = ideal({d(1, 0), d(2, 1), d(3, 2)}), step = ideal({d(2, 0), d(3, 1)});
+    const double ends = d(3, 0);
+    const auto reached = [&](double low, double high) { return low - slack <= ends && ends <= high + slack; };
+    if (link.low <= 0 || step.low <= 0) return true;
+    const auto arc = [](double l, double s) { return s * s / l - l; };
+    const auto zigzag = [](double l, double s) { return std::sqrt(l * l + 2 * s * s); };
+    return reached(arc(link.high, step.low), std::abs(arc(link.low, step.high))) ||
+           reached(zigzag(link.low, step.low), zigzag(link.high, step.high));
 }
 
 void TypeOracle::find_plane() {

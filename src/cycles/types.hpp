@@ -24,6 +24,7 @@ private:
 
     bool close_to(const Points& ideal) const;
     bool near_line();
+    bool four_may_be_flat() const;
     void find_plane();
     double flatness_change() const;
     void find_turns();
@@ -40,7 +41,6 @@ private:
     // In the best plane through the points:
     Eigen::Matrix<double, 3, 2> plane_;
     std::vector<Eigen::Vector2d> flat_;
-    bool is_flat_ = false;
     bool one_way_ = false;
     bool alternate_ = false;
     double first_turn_ = 0;
