@@ -28,6 +28,11 @@ RigidMap carry(const std::array<Vector3d, 3>& from, const std::array<Vector3d, 3
     return map;
 }
 
+bool before(const Candidate& x, const Candidate& y) {
+    if (x.rank != y.rank) return x.rank < y.rank;
+    return x.points != y.points ? x.points < y.points : x.type < y.type;
+}
+
 namespace {
 
 std::vector<Point> positions(const Cloud& cloud, const SearchGroup& group) {
@@ -65,18 +70,8 @@ public:
         cut();
         return std::move(found_);
     }
-    std::vector<Candidate> sorted() {
-        std::vector<Candidate> out = kept();
-        std::sort(out.begin(), out.end(), before);
-        return out;
-    }
 
 private:
-    static bool before(const Candidate& x, const Candidate& y) {
-        if (x.rank != y.rank) return x.rank < y.rank;
-        return x.points != y.points ? x.points < y.points : x.type < y.type;
-    }
-
     void cut() {
         if (found_.size() <= most_) return;
         const auto end = found_.begin() + static_cast<std::ptrdiff_t>(most_);
@@ -101,7 +96,7 @@ std::vector<Candidate> best_of_parts(const Search& search, std::size_t most, con
     BestCandidates best(most);
     for (Search& part : parts)
         for (const Candidate& c : part.best().kept()) best.add(c);
-    return best.sorted();
+    return best.kept();
 }
 
 /// A turn about the circle through three points.
