@@ -36,6 +36,7 @@ Agreed agreeing_first(const Cloud& cloud, const std::vector<Candidate>& candidat
     };
     std::vector<Voted> all;
     std::unordered_map<std::uint64_t, std::size_t> known;
+    known.reserve(candidates.size());
     for (const Candidate& c : candidates) {
         if (disagreement(cloud, c) <= kExact * resolution) {
             const Hypothesis h = hypothesis_of(cloud, c);

@@ -305,10 +305,16 @@ private:
 
     void partner(int a, int mate, int b) {
         const double same = distances_(a, b), cross = distances_(mate, b);
-        distances_.visit_shell(mate, same - slack_, same + slack_, [&](int other, double) {
-            if (other != a && other != b && other != mate && (other > b || !all_) &&
-                std::abs(distances_(a, other) - cross) <= slack_)
+        // Where all points are B in turn a pair is met from both of its ends: the one nearer to A will do.
+        const auto nearer = [&](double to_a, double to_mate) { return to_a <= to_mate + slack_; };
+        if (all_ && !nearer(same, cross)) return;
+        distances_.visit_shell(mate, same - slack_, same + slack_, [&](int other, double to_mate) {
+            const double to_a = distances_(a, other);
+            if (other == a || other == b || other == mate || std::abs(to_a - cross) > slack_) return true;
+            if (!all_ || other > b)
                 add(a, mate, b, other);
+            else if (!nearer(to_a, to_mate))
+                add(a, mate, other, b);
             return true;
         });
     }

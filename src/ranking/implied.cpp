@@ -179,8 +179,11 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
     parallel_for(order.size(), [&](std::size_t i) {
         const std::size_t g = order[i];
         for (std::size_t k = 0; k < symmetries.size() && !monitor.should_stop(); ++k)
+            // What is itself no generator will not become more significant.
             if (k != g && kept_by_a_power(g, k) &&
-                (is_pair_type(symmetries[k].type) || motion[k] >= motion[g]) && all.carries(all[g], all[k]))
+                (is_pair_type(symmetries[k].type) ? significance[k] <= significance[g]
+                                                  : motion[k] >= motion[g]) &&
+                all.carries(all[g], all[k]))
                 carried[i].push_back(k);
     });
     for (std::size_t i = 0; i < order.size() && !monitor.should_stop(); ++i) {
