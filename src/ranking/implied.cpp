@@ -159,9 +159,9 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
     const Implications all(cloud, symmetries);
     constexpr double kShare = 0.4;  // of a power's significance that its generator must have by itself
     // The largest turns and steps first, so that the smallest has the last word.
-    std::vector<std::size_t> order;
+    std::vector<std::size_t> order, pairs;
     for (std::size_t k = 0; k < symmetries.size(); ++k)
-        if (!is_pair_type(symmetries[k].type) && symmetries[k].significance < 0) order.push_back(k);
+        if (symmetries[k].significance < 0) (is_pair_type(symmetries[k].type) ? pairs : order).push_back(k);
     std::vector<std::pair<double, double>> motion;
     std::vector<double> significance;
     for (const Symmetry& s : symmetries) {
@@ -170,7 +170,8 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
     }
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return motion[a] > motion[b]; });
-    // What could be a power of each. A half-turn, a mirror or an inversion can be one as well.
+    // What could be a power of each: what turns or steps as far; a half-turn, a mirror or an inversion, which
+    // will not become more significant.
     std::vector<std::vector<std::size_t>> carried(order.size());
     const auto kept_by_a_power = [&](std::size_t g, std::size_t k) {
         // A power may become more significant yet, which makes it harder.
@@ -178,13 +179,13 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
     };
     parallel_for(order.size(), [&](std::size_t i) {
         const std::size_t g = order[i];
-        for (std::size_t k = 0; k < symmetries.size() && !monitor.should_stop(); ++k)
-            // What is itself no generator will not become more significant.
-            if (k != g && kept_by_a_power(g, k) &&
-                (is_pair_type(symmetries[k].type) ? significance[k] <= significance[g]
-                                                  : motion[k] >= motion[g]) &&
-                all.carries(all[g], all[k]))
-                carried[i].push_back(k);
+        const auto carry = [&](std::size_t k) {
+            if (kept_by_a_power(g, k) && all.carries(all[g], all[k])) carried[i].push_back(k);
+        };
+        for (std::size_t j = 0; j < order.size() && motion[order[j]] >= motion[g]; ++j)
+            if (j != i && !monitor.should_stop()) carry(order[j]);
+        for (const std::size_t k : pairs)
+            if (significance[k] <= significance[g] && !monitor.should_stop()) carry(k);
     });
     for (std::size_t i = 0; i < order.size() && !monitor.should_stop(); ++i) {
         const std::size_t g = order[i];
