@@ -31,29 +31,33 @@ Agreed agreeing_first(const Cloud& cloud, const std::vector<Candidate>& candidat
     constexpr double kCell = 64, kExact = 16;  // resolutions
     const double resolution = cloud.scene().resolution;
     struct Voted {
-        std::size_t first;
+        Candidate best;
         int votes;
     };
     std::vector<Voted> all;
     std::unordered_map<std::uint64_t, std::size_t> known;
-    for (std::size_t k = 0; k < candidates.size(); ++k) {
-        if (disagreement(cloud, candidates[k]) <= kExact * resolution) {
-            const Hypothesis h = hypothesis_of(cloud, candidates[k]);
+    known.reserve(candidates.size());
+    for (const Candidate& c : candidates) {
+        if (disagreement(cloud, c) <= kExact * resolution) {
+            const Hypothesis h = hypothesis_of(cloud, c);
             const auto [place, is_new] =
                 known.try_emplace(key_of(h.map, h.type, cloud.radius(), kCell * resolution), all.size());
             if (!is_new) {
-                ++all[place->second].votes;
+                Voted& same = all[place->second];
+                ++same.votes;
+                if (before(c, same.best)) same.best = c;
                 continue;
             }
         }
-        all.push_back({k, 1});
+        all.push_back({c, 1});
     }
-    std::stable_sort(all.begin(), all.end(),
-                     [](const Voted& a, const Voted& b) { return a.votes > b.votes; });
+    std::sort(all.begin(), all.end(), [](const Voted& a, const Voted& b) {
+        return a.votes != b.votes ? a.votes > b.votes : before(a.best, b.best);
+    });
     Agreed out;
     out.candidates.reserve(all.size());
     for (const Voted& v : all) {
-        out.candidates.push_back(candidates[v.first]);
+        out.candidates.push_back(v.best);
         if (v.votes > 1) ++out.agreeing;
     }
     return out;

@@ -28,6 +28,11 @@ RigidMap carry(const std::array<Vector3d, 3>& from, const std::array<Vector3d, 3
     return map;
 }
 
+bool before(const Candidate& x, const Candidate& y) {
+    if (x.rank != y.rank) return x.rank < y.rank;
+    return x.points != y.points ? x.points < y.points : x.type < y.type;
+}
+
 namespace {
 
 std::vector<Point> positions(const Cloud& cloud, const SearchGroup& group) {
@@ -65,18 +70,8 @@ public:
         cut();
         return std::move(found_);
     }
-    std::vector<Candidate> sorted() {
-        std::vector<Candidate> out = kept();
-        std::sort(out.begin(), out.end(), before);
-        return out;
-    }
 
 private:
-    static bool before(const Candidate& x, const Candidate& y) {
-        if (x.rank != y.rank) return x.rank < y.rank;
-        return x.points != y.points ? x.points < y.points : x.type < y.type;
-    }
-
     void cut() {
         if (found_.size() <= most_) return;
         const auto end = found_.begin() + static_cast<std::ptrdiff_t>(most_);
@@ -101,7 +96,7 @@ std::vector<Candidate> best_of_parts(const Search& search, std::size_t most, con
     BestCandidates best(most);
     for (Search& part : parts)
         for (const Candidate& c : part.best().kept()) best.add(c);
-    return best.sorted();
+    return best.kept();
 }
 
 /// A turn about the circle through three points.
@@ -310,10 +305,16 @@ private:
 
     void partner(int a, int mate, int b) {
         const double same = distances_(a, b), cross = distances_(mate, b);
-        distances_.visit_shell(mate, same - slack_, same + slack_, [&](int other, double) {
-            if (other != a && other != b && other != mate && (other > b || !all_) &&
-                std::abs(distances_(a, other) - cross) <= slack_)
+        // Where all points are B in turn a pair is met from both of its ends: the one nearer to A will do.
+        const auto nearer = [&](double to_a, double to_mate) { return to_a <= to_mate + slack_; };
+        if (all_ && !nearer(same, cross)) return;
+        distances_.visit_shell(mate, same - slack_, same + slack_, [&](int other, double to_mate) {
+            const double to_a = distances_(a, other);
+            if (other == a || other == b || other == mate || std::abs(to_a - cross) > slack_) return true;
+            if (!all_ || other > b)
                 add(a, mate, b, other);
+            else if (!nearer(to_a, to_mate))
+                add(a, mate, other, b);
             return true;
         });
     }

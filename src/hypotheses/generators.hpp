@@ -60,15 +60,18 @@ struct Candidate {
     std::array<int, 4> points{{-1, -1, -1, -1}};
 };
 
+/// In the order of their ranks; of equal ones by their points.
+bool before(const Candidate& x, const Candidate& y);
+
 /// Half-turns from two pairs A, A' and B, B' with |AB| = |A'B'| and |AB'| = |A'B|. The `most` that agree
-/// best, best first. The first pair has a point of the focus. About `looks` pairs of pairs are looked at, and
-/// at least four for each pair.
+/// best, in any order. The first pair has a point of the focus. About `looks` pairs of pairs are looked at,
+/// and at least four for each pair.
 std::vector<Candidate> half_turns(const GroupDistances& group, double reach, double looks, std::size_t most);
 
 /// Rotations from three points A, B, C with |AB| = |BC|, one of whose neighbours on the ring is there; every
-/// other kind from four with |AB| = |BC| = |CD| and |AC| = |BD|. The `most` that chance explains least, best
-/// first. Of a large group `reach` is lowered until chance gives about 60,000 of three and 10,000 of four,
-/// each times `effort`. B, or C of four, is of the focus.
+/// other kind from four with |AB| = |BC| = |CD| and |AC| = |BD|. The `most` that chance explains least, in
+/// any order. Of a large group `reach` is lowered until chance gives about 60,000 of three and 10,000 of
+/// four, each times `effort`. B, or C of four, is of the focus.
 std::vector<Candidate> chains(const GroupDistances& group, double reach, double effort, std::size_t most);
 
 struct Agreed {
@@ -77,7 +80,7 @@ struct Agreed {
 };
 
 /// Candidates that say the same isometry to the resolution are one: the best of them stays, and what most of
-/// them say comes first; the others keep their order. O(candidates).
+/// them say comes first; the others follow, the best first. O(candidates), and to sort what is left.
 Agreed agreeing_first(const Cloud& cloud, const std::vector<Candidate>& candidates);
 
 /// How far its distances are from agreeing; at least the resolution but for half-turns.

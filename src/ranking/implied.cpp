@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -27,10 +26,10 @@ public:
 
     /// Holds all of `others` but so many.
     bool holds_but(const PointBits& others, std::size_t most) const {
-        std::size_t left = 0;
-        for (std::size_t w = 0; w < words_.size() && left <= most; ++w)
-            left += static_cast<std::size_t>(std::popcount(others.words_[w] & ~words_[w]));
-        return left <= most;
+        for (std::size_t w = 0; w < words_.size(); ++w)
+            for (std::uint64_t left = others.words_[w] & ~words_[w]; left != 0; left &= left - 1)
+                if (most-- == 0) return false;
+        return true;
     }
 
 private:
@@ -160,40 +159,43 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
     const Implications all(cloud, symmetries);
     constexpr double kShare = 0.4;  // of a power's significance that its generator must have by itself
     // The largest turns and steps first, so that the smallest has the last word.
-    std::vector<std::size_t> order;
+    std::vector<std::size_t> order, pairs;
     for (std::size_t k = 0; k < symmetries.size(); ++k)
-        if (!is_pair_type(symmetries[k].type) && symmetries[k].significance < 0) order.push_back(k);
+        if (symmetries[k].significance < 0) (is_pair_type(symmetries[k].type) ? pairs : order).push_back(k);
     std::vector<std::pair<double, double>> motion;
-    motion.reserve(symmetries.size());
-    for (const Symmetry& s : symmetries)
+    std::vector<double> significance;
+    for (const Symmetry& s : symmetries) {
         motion.emplace_back(std::round(s.isometry.angle_deg * 1e3), s.isometry.step);
+        significance.push_back(s.significance);
+    }
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return motion[a] > motion[b]; });
-    // What could be a power of each. A half-turn, a mirror or an inversion can be one as well.
+    // What could be a power of each: what turns or steps as far; a half-turn, a mirror or an inversion, which
+    // will not become more significant.
     std::vector<std::vector<std::size_t>> carried(order.size());
     const auto kept_by_a_power = [&](std::size_t g, std::size_t k) {
         // A power may become more significant yet, which makes it harder.
-        return symmetries[g].significance <= kShare * symmetries[k].significance;
+        return significance[g] <= kShare * significance[k];
     };
     parallel_for(order.size(), [&](std::size_t i) {
         const std::size_t g = order[i];
-        for (std::size_t k = 0; k < symmetries.size() && !monitor.should_stop(); ++k)
-            if (k != g && kept_by_a_power(g, k) &&
-                (is_pair_type(symmetries[k].type) || motion[k] >= motion[g]) && all.carries(all[g], all[k]))
-                carried[i].push_back(k);
+        const auto carry = [&](std::size_t k) {
+            if (kept_by_a_power(g, k) && all.carries(all[g], all[k])) carried[i].push_back(k);
+        };
+        for (std::size_t j = 0; j < order.size() && motion[order[j]] >= motion[g]; ++j)
+            if (j != i && !monitor.should_stop()) carry(order[j]);
+        for (const std::size_t k : pairs)
+            if (significance[k] <= significance[g] && !monitor.should_stop()) carry(k);
     });
     for (std::size_t i = 0; i < order.size() && !monitor.should_stop(); ++i) {
         const std::size_t g = order[i];
-        const double own = symmetries[g].significance;
+        const double own = significance[g];
         // A power of a chance is no intent.
         std::vector<std::size_t>& better = carried[i];
-        std::erase_if(better, [&](std::size_t k) {
-            return symmetries[k].significance > own || !kept_by_a_power(g, k);
-        });
+        std::erase_if(better, [&](std::size_t k) { return significance[k] > own || !kept_by_a_power(g, k); });
         if (better.empty()) continue;
-        std::sort(better.begin(), better.end(), [&](std::size_t a, std::size_t b) {
-            return symmetries[a].significance < symmetries[b].significance;
-        });
+        std::sort(better.begin(), better.end(),
+                  [&](std::size_t a, std::size_t b) { return significance[a] < significance[b]; });
         std::vector<RigidMap> powers = all.powers(g, kMostPowers);
         powers.erase(powers.begin(), powers.begin() + 2);
         const auto is_power = [&](std::size_t k) {
@@ -202,8 +204,9 @@ void promote_generators(const Cloud& cloud, std::vector<Symmetry>& symmetries, R
             return false;
         };
         const auto best = std::find_if(better.begin(), better.end(), is_power);
-        if (best != better.end()) symmetries[g].significance = symmetries[*best].significance * (1 + 1e-9);
+        if (best != better.end()) significance[g] = significance[*best] * (1 + 1e-9);
     }
+    for (std::size_t k = 0; k < symmetries.size(); ++k) symmetries[k].significance = significance[k];
 }
 
 namespace {
@@ -217,6 +220,8 @@ public:
     void add(std::size_t k) {
         ids_.push_back(k);
         powers_.push_back(all_.powers(k, kMostPowers));
+        inverses_.emplace_back();
+        for (const RigidMap& power : powers_.back()) inverses_.back().push_back(inverse(power));
     }
 
     /// Those that symmetry k is a power of, or a product of powers of; nothing where there are none.
@@ -260,7 +265,7 @@ private:
         std::vector<std::array<std::size_t, 4>> products;  // two generators, and their words
         for (std::size_t g = 0; g < able.size(); ++g)
             for (std::size_t i = 0; i < words(able[g]); ++i) {
-                const Vector3d fetched = inverse(powers_[able[g]][i])(image);
+                const Vector3d fetched = inverses_[able[g]][i](image);
                 const double from = kAskew.dot(fetched) - 1.01 * widest;
                 auto second = std::lower_bound(taken.begin(), taken.end(), from,
                                                [](const Word& w, double along) { return w.along < along; });
@@ -285,7 +290,7 @@ private:
 
     const Implications& all_;
     std::vector<std::size_t> ids_;
-    std::vector<std::vector<RigidMap>> powers_;
+    std::vector<std::vector<RigidMap>> powers_, inverses_;
 };
 
 }  // namespace

@@ -52,12 +52,14 @@ public:
         offer(frames(cloud_, Vector3d::Zero(), reach, static_cast<std::size_t>(budget(1000))));
         SearchGroup points(static_cast<std::size_t>(cloud_.size()));
         std::iota(points.begin(), points.end(), 0);
-        // What is exact first, which is found among few candidates; what is not, then among few points.
-        constexpr std::size_t kShare = 8;
+        // What is exact first, which is found among few candidates; what is not, then among few points: a
+        // share of each exact orbit, in a small set a larger one, so that of any set a dozen points stay.
+        constexpr std::size_t kShare = 8, kDozen = 12;
+        const std::size_t share = std::clamp<std::size_t>(points.size() / kDozen, 1, kShare);
         const double exact = exact_reach();
         if (exact < reach) {
             look_at(points, exact, 3e5);
-            points = representatives(cloud_, collection_.supports(), kShare, Stay::outer);
+            points = representatives(cloud_, collection_.supports(), share, Stay::outer);
         }
         look_at(points, reach, 1e6);
         offer_roots();
@@ -105,12 +107,18 @@ private:
             sources.push_back(source(v, exact ? voted / 2 : voted));
         offer(std::move(sources));
         monitor_.advance();
-        // Points that are exactly alike suggest alike.
+        offer_groups(groups, focus());
+    }
+
+    /// Points that are exactly alike suggest alike. Where there are few, all suggest, which costs little.
+    Focus focus() const {
         constexpr std::size_t kFocus = 16;
+        constexpr int kFew = 100;
+        if (cloud_.size() <= kFew) return {};
         Focus focus(static_cast<std::size_t>(cloud_.size()), 0);
         for (const int i : representatives(cloud_, collection_.supports(), kFocus, Stay::inner))
             focus[static_cast<std::size_t>(i)] = 1;
-        offer_groups(groups, focus);
+        return focus;
     }
 
     /// Half-turns in the plane are inversions there.

@@ -52,11 +52,6 @@ void sort_orbit(const Cloud& cloud, Stay first, SearchGroup& orbit) {
 SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports, std::size_t share,
                             Stay stay) {
     SearchGroup out;
-    if (cloud.size() <= kFew) {
-        out.resize(static_cast<std::size_t>(cloud.size()));
-        std::iota(out.begin(), out.end(), 0);
-        return out;
-    }
     for (SearchGroup& orbit : exact_orbits(cloud, supports)) {
         const std::size_t count = std::max(kLeast, orbit.size() / share);
         if (count < orbit.size()) {

@@ -14,7 +14,7 @@ namespace insym {
 enum class Stay { outer, inner };
 
 /// All points but, of those that the exact ones of `supports` carry into one another, one of each `share`,
-/// and at least two. Of a few points all. Ascending. O(n log n + links).
+/// and at least two. Ascending. O(n log n + links).
 SearchGroup representatives(const Cloud& cloud, const std::vector<Support>& supports, std::size_t share,
                             Stay stay);
 

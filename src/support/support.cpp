@@ -329,14 +329,27 @@ RigidMap Gatherer::refit(SymmetryType type, const std::vector<std::pair<int, int
 double Gatherer::sampled(const Hypothesis& h, const RigidMap& map, double reach) const {
     const int n = cloud_.size();
     int hits = 0;
+    double ignored = 0;
     for (int k = 0; k < kSample; ++k)
-        hits += carries(h, map, static_cast<int>(std::int64_t{k} * n / kSample), reach) ? 1 : 0;
+        hits += carries(h, map, static_cast<int>(std::int64_t{k} * n / kSample), reach, ignored) ? 1 : 0;
     return hits - 2 * kSample * significance_.background().chance(reach);
 }
 
-/// A point that does not suggest the hypothesis itself.
-bool Gatherer::carries(const Hypothesis& h, const RigidMap& map, int i, double reach) const {
+/// The same is more for the largest reach than for `near`.
+bool Gatherer::widens(const Hypothesis& h, const RigidMap& map, double near) const {
+    const int n = cloud_.size();
+    int more = 0;
     double square = 0;
+    for (int k = 0; k < kSample; ++k)
+        if (carries(h, map, static_cast<int>(std::int64_t{k} * n / kSample), reach(), square) &&
+            square > near * near)
+            ++more;
+    const Background& background = significance_.background();
+    return more > 2 * kSample * (background.chance(reach()) - background.chance(near));
+}
+
+/// A point that does not suggest the hypothesis itself. `square`: how far off, squared.
+bool Gatherer::carries(const Hypothesis& h, const RigidMap& map, int i, double reach, double& square) const {
     const int j = cloud_.nearest(map(cloud_[i]), cloud_.label(i), reach, square);
     if (j < 0 || j == i) return false;
     const bool own = std::find(h.from.begin(), h.from.end(), i) != h.from.end() ||
@@ -350,8 +363,9 @@ bool Gatherer::promising(const Hypothesis& h, double reach) const {
     if (cloud_.size() <= kSample || h.from[0] < 0) return true;
     int looks = 0;
     bool near = false;
+    double ignored = 0;
     cloud_.grid().visit_ball(to_point(h.center), 2 * h.radius, [&](int i, double) {
-        near = carries(h, h.map, i, reach);
+        near = carries(h, h.map, i, reach, ignored);
         return !near && ++looks < kSample;
     });
     return near || sampled(h, h.map, reach) > 0;
@@ -438,8 +452,7 @@ std::optional<Support> Gatherer::gather(const Hypothesis& hypothesis, double wor
     if (!best) return std::nullopt;
     const bool few = cloud_.size() <= 2 * kSample;
     double looked = near;
-    if (near < reach() &&
-        (few || sampled(hypothesis, best->map, reach()) > sampled(hypothesis, best->map, near))) {
+    if (near < reach() && (few || widens(hypothesis, best->map, near))) {
         const auto wider = settle(best->type, best->map, reach(), kept + 3, region, linked);
         if (wider && wider->significance < best->significance) best = wider;
         looked = reach();

@@ -62,8 +62,10 @@ private:
     std::optional<Support> settle(SymmetryType type, RigidMap map, double reach, double worst,
                                   const Region& region, Linked& linked) const;
     Region grow(const Hypothesis& hypothesis, double reach, RigidMap& map, Linked& linked) const;
-    bool carries(const Hypothesis& hypothesis, const RigidMap& map, int point, double reach) const;
+    bool carries(const Hypothesis& hypothesis, const RigidMap& map, int point, double reach,
+                 double& square) const;
     double sampled(const Hypothesis& hypothesis, const RigidMap& map, double reach) const;
+    bool widens(const Hypothesis& hypothesis, const RigidMap& map, double near) const;
     bool promising(const Hypothesis& hypothesis, double reach) const;
 
     const Cloud& cloud_;
