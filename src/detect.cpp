@@ -36,7 +36,7 @@ constexpr int kComparesAllPairs = 100;
 /// Of larger sets that are exact for the most part it takes, under `auto` and up to so many resolutions, what
 /// is exact: so many symmetries of each kind.
 constexpr double kExactUpTo = 10;
-constexpr std::size_t kMostExactPairs = 250;
+constexpr std::size_t kMostExactPairs = 100;
 
 /// Method `robust` chooses the tolerance of each symmetry itself, up to this share of the diameter.
 constexpr double kLargestTolerance = 0.1;

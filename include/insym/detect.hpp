@@ -34,7 +34,7 @@ struct DetectOptions {
     TypeSet types = TypeSet::all();  ///< kinds to look for; not empty
     double resolution = 1e-6;        ///< share of the diameter, in (0, 1): equal lengths
     /// Share of the diameter, in [resolution, 1]; none: auto. Under auto or up to ten resolutions method
-    /// paper lists of exact sets of more than 100 points only the 250 mirrors, inversions and half-turns of
+    /// paper lists of exact sets of more than 100 points only the 100 mirrors, inversions and half-turns of
     /// most pairs, which a diagnostic `exact_pairs` tells.
     std::optional<double> max_tolerance;
     Regions regions;                 ///< method robust takes the default only
