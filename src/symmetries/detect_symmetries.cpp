@@ -75,13 +75,19 @@ Symmetry from_pairs(const PairCluster& cluster) {
     return symmetry;
 }
 
-/// Where what is exact moves most of the points, what is rough besides is taken for chance.
+bool has_pair_type(TypeSet types) {
+    return std::any_of(kAllSymmetryTypes.begin(), kAllSymmetryTypes.end(),
+                       [&](SymmetryType type) { return is_pair_type(type) && types.contains(type); });
+}
+
+/// A set of which so many points have exact mates is drawn, not measured: what is rough besides is taken for
+/// chance.
 std::vector<PairCluster> clusters_of_pairs(const Scene& scene, TypeSet types, std::size_t most_exact,
                                            RunMonitor& monitor, SymmetrySearchResult& result) {
-    constexpr double kMostOfThePoints = 0.5;
-    if (most_exact > 0) {
+    constexpr double kDrawn = 0.25;
+    if (most_exact > 0 && has_pair_type(types)) {
         ExactPairs exact = detect_exact_pairs(scene, types, most_exact, monitor);
-        if (exact.share >= kMostOfThePoints) {
+        if (exact.share >= kDrawn) {
             result.exact_kinds = std::move(exact.kinds);
             return std::move(exact.clusters);
         }

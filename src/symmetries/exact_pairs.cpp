@@ -199,34 +199,35 @@ std::vector<PairCluster> ExactSearch::clusters(SymmetryType type, ExactKind& kin
     return out;
 }
 
-double share_moved(const std::vector<PairCluster>& clusters, int points) {
+double share_moved(const std::vector<std::vector<PairCluster>>& clusters, int points) {
     std::vector<char> moved(static_cast<std::size_t>(points), 0);
-    for (const PairCluster& c : clusters)
-        for (const Pair& p : c.pairs)
-            moved[static_cast<std::size_t>(p.first)] = moved[static_cast<std::size_t>(p.second)] = 1;
+    for (const std::vector<PairCluster>& of_a_kind : clusters)
+        for (const PairCluster& c : of_a_kind)
+            for (const Pair& p : c.pairs)
+                moved[static_cast<std::size_t>(p.first)] = moved[static_cast<std::size_t>(p.second)] = 1;
     return static_cast<double>(std::count(moved.begin(), moved.end(), 1)) / points;
 }
 
 }  // namespace
 
 ExactPairs detect_exact_pairs(const PointScene& scene, TypeSet types, std::size_t most, RunMonitor& monitor) {
-    std::vector<SymmetryType> wanted;
-    for (const SymmetryType type : {SymmetryType::mirror, SymmetryType::inversion, SymmetryType::half_turn})
-        if (types.contains(type) && !(type == SymmetryType::inversion && scene.dimension() == 2))
-            wanted.push_back(type);
-    ExactPairs out;
-    if (wanted.empty()) return out;
-    monitor.begin_stage("pairs", wanted.size());
+    std::vector<SymmetryType> kinds{SymmetryType::mirror, SymmetryType::half_turn};
+    if (scene.dimension() == 3) kinds.push_back(SymmetryType::inversion);
+    monitor.begin_stage("pairs", kinds.size());
     const ExactSearch search(scene, most);
-    std::vector<std::vector<PairCluster>> clusters(wanted.size());
-    out.kinds.resize(wanted.size());
-    parallel_for(wanted.size(), [&](std::size_t k) {
-        if (!monitor.should_stop()) clusters[k] = search.clusters(wanted[k], out.kinds[k]);
+    std::vector<std::vector<PairCluster>> clusters(kinds.size());
+    std::vector<ExactKind> found(kinds.size());
+    parallel_for(kinds.size(), [&](std::size_t k) {
+        if (!monitor.should_stop()) clusters[k] = search.clusters(kinds[k], found[k]);
         monitor.advance();
     });
-    for (std::vector<PairCluster>& found : clusters)
-        std::move(found.begin(), found.end(), std::back_inserter(out.clusters));
-    out.share = share_moved(out.clusters, scene.size());
+    ExactPairs out;
+    out.share = share_moved(clusters, scene.size());
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        if (!types.contains(kinds[k])) continue;
+        out.kinds.push_back(found[k]);
+        std::move(clusters[k].begin(), clusters[k].end(), std::back_inserter(out.clusters));
+    }
     return out;
 }
 

@@ -21,7 +21,7 @@ struct ExactKind {
 struct ExactPairs {
     std::vector<PairCluster> clusters;
     std::vector<ExactKind> kinds;  ///< of those that were asked for
-    double share = 0;              ///< of the points that one of the clusters moves
+    double share = 0;              ///< of the points that an exact symmetry of any of the kinds moves
 };
 
 /// Of each of the `types` M, I and half-turn the `most` isometries that exchange the most pairs to the
