@@ -33,8 +33,8 @@ constexpr int kMostRegions = 10000;
 
 /// Up to so many points method paper compares all pairs with all, which takes n^3 / 3 steps.
 constexpr int kComparesAllPairs = 100;
-/// Of larger sets that are exact for the most part it takes, under `auto` and up to so many resolutions, what
-/// is exact: so many symmetries of each kind.
+/// Of larger sets that are drawn, not measured, it takes under `auto` and up to so many resolutions what is
+/// exact: so many symmetries of each kind.
 constexpr double kExactUpTo = 10;
 constexpr std::size_t kMostExactPairs = 100;
 

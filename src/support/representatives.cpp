@@ -8,7 +8,6 @@
 namespace insym {
 namespace {
 
-constexpr int kFew = 100;          // points, all of which cost little
 constexpr double kExact = 3;       // resolutions
 constexpr double kSure = -10;      // significance
 constexpr std::size_t kLeast = 2;  // of an orbit stay
