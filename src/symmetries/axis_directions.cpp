@@ -103,6 +103,7 @@ std::vector<Vector3d> axis_directions(const Cloud& cloud, std::size_t most) {
                                            [&](std::size_t k) -> Vector3d { return suggested[k] + off; });
     keep_fullest(cells, most);
     std::vector<Vector3d> out;
+    out.reserve(cells.size());
     for (const Ranked& r : cells) out.push_back(suggested[static_cast<std::size_t>(r.first)]);
     return out;
 }

@@ -91,6 +91,7 @@ Suggestions ExactSearch::by_votes(SymmetryType type) const {
 /// Pairs at one height along a direction: half-turns about it can exchange no others.
 PointPairs ExactSearch::level_pairs(const Vector3d& direction) const {
     std::vector<std::pair<double, int>> heights;
+    heights.reserve(static_cast<std::size_t>(cloud_.size()));
     for (int i = 0; i < cloud_.size(); ++i) heights.emplace_back(direction.dot(cloud_[i]), i);
     std::sort(heights.begin(), heights.end());
     PointPairs out;
