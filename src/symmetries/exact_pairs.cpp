@@ -19,6 +19,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr std::size_t kMostVotingPairs = 1'500'000;
+constexpr std::size_t kMostOfALevel = 200'000;  // of pairs at one height
 
 /// Half-turns are looked for about so many directions.
 constexpr std::size_t kDirections = 64;
@@ -95,12 +96,11 @@ PointPairs ExactSearch::level_pairs(const Vector3d& direction) const {
     for (int i = 0; i < cloud_.size(); ++i) heights.emplace_back(direction.dot(cloud_[i]), i);
     std::sort(heights.begin(), heights.end());
     PointPairs out;
-    const std::size_t most = kMostVotingPairs / kDirections;
     for (std::size_t k = 0; k < heights.size();) {
         SearchGroup level{heights[k].second};
         for (++k; k < heights.size() && heights[k].first - heights[k - 1].first <= scene_.resolution / 4; ++k)
             level.push_back(heights[k].second);
-        const PointPairs pairs = spread_pairs(cloud_, level, 8 * most);
+        const PointPairs pairs = spread_pairs(cloud_, level, kMostOfALevel);
         out.insert(out.end(), pairs.begin(), pairs.end());
     }
     return out;
