@@ -45,7 +45,7 @@ def cloud(n):
 
 def long_run(box):
     """Arguments of a run that takes much longer than any of these tests waits."""
-    return box.points("cloud.xyz", cloud(2000)).name, "--max-tolerance", "0.05"
+    return box.points("cloud.xyz", cloud(20000)).name, "--max-tolerance", "0.05"
 
 
 def shared(name):
