@@ -150,13 +150,6 @@ double ChainOracle::closed_tolerance(const Chain& chain) {
     return tolerance_interval(spans_, scene_.resolution, scene_.max_tolerance).min;
 }
 
-double ChainOracle::tolerance(std::span<const int> points, bool closed) {
-    for (const int p : points)
-        if (scene_.label(p) != scene_.label(points.front())) return kInfinity;
-    const double tolerance = interval(points, closed).min;
-    return tolerance <= scene_.max_tolerance ? tolerance : kInfinity;
-}
-
 // --- candidates ----------------------------------------------------------------------------------
 
 /// The points that the last three at `end` leave to ask.

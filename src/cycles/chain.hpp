@@ -99,8 +99,6 @@ public:
     ToleranceInterval interval(std::span<const int> points, bool closed);
     /// E_min of the chain closed to a cycle, infinite above max_tolerance. O(c log c).
     double closed_tolerance(const Chain& chain);
-    /// E_min of a sequence with C1 (one label, and E_min <= max_tolerance), infinite without.
-    double tolerance(std::span<const int> points, bool closed);
     /// C2: no outside point can replace a point of the sequence with its E_min, `eps`, still valid.
     bool unambiguous(std::span<const int> points, bool closed, double eps);
 

@@ -1,7 +1,6 @@
 // Mirrors, inversions and half-turns of larger sets: those that are exact and exchange the most pairs.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
