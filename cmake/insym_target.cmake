@@ -16,6 +16,8 @@ function(insym_target name)
     # GCC 12 wrongly sees an overlap in "literal" + std::string (GCC's bug 105651).
     target_compile_options(${name} PRIVATE -Werror -Wno-restrict)
   endif()
+  # Nothing reads errno, and a loop of square roots that sets it cannot take several at once.
+  target_compile_options(${name} PRIVATE -fno-math-errno)
   # Same bytes everywhere: no contraction of a*b+c, which depends on the machine.
   target_compile_options(${name} PRIVATE -ffp-contract=off)
   if(INSYM_SANITIZE)

@@ -31,10 +31,12 @@ constexpr std::size_t kMostPoints = 15000;
 
 constexpr int kMostRegions = 10000;
 
-/// Up to so many points method paper compares all pairs with all, which takes n^3 / 3 steps.
-constexpr int kComparesAllPairs = 100;
-/// Of larger sets that are drawn, not measured, it takes under `auto` and up to so many resolutions what is
-/// exact: so many symmetries of each kind.
+/// Up to so many points method paper starts from all seeds and compares all pairs with all, which takes n^3 / 3
+/// steps.
+constexpr int kSearchesAll = 100;
+/// Of larger sets it takes, under `auto` and up to so many resolutions, the seeds that do not follow from others
+/// and a translation, and of pairs, where the set is drawn and not measured, so many exact symmetries of each
+/// kind.
 constexpr double kExactUpTo = 10;
 constexpr std::size_t kMostExactPairs = 100;
 
@@ -145,12 +147,12 @@ void measure_largest_first(const Measure& measure, RunMonitor& monitor, DetectRe
 }
 
 /// The cycles of the kinds asked for.
-CycleSearchResult search_cycles(const Scene& scene, const DetectOptions& options, RunMonitor& monitor,
-                                std::vector<Diagnostic>& diagnostics) {
+CycleSearchResult search_cycles(const Scene& scene, const DetectOptions& options, SeedChoice choice,
+                                RunMonitor& monitor, std::vector<Diagnostic>& diagnostics) {
     // Pairs need no cycles; a run that asks for pairs alone does not pay for them.
     if ((options.types & cycle_types()).empty()) return {};
     monitor.begin_stage("cycles", 2 * static_cast<std::size_t>(scene.size()));
-    auto [search, axis, ambiguous] = detect_cycles_in_regions(scene, options.regions, monitor);
+    auto [search, axis, ambiguous] = detect_cycles_in_regions(scene, options.regions, choice, monitor);
     if (options.regions.count > 1)
         diagnostics.push_back(
             {"regions", "cycles were searched only inside " + std::to_string(options.regions.count) +
@@ -160,9 +162,21 @@ CycleSearchResult search_cycles(const Scene& scene, const DetectOptions& options
     return std::move(search);
 }
 
-bool asks_for_exact_pairs(const PointScene& scene, const DetectOptions& options) {
-    if (scene.size() <= kComparesAllPairs) return false;
+bool is_searched_as_exact(const PointScene& scene, const DetectOptions& options) {
+    if (scene.size() <= kSearchesAll) return false;
     return !options.max_tolerance || *options.max_tolerance <= kExactUpTo * options.resolution * (1 + 1e-9);
+}
+
+/// What was not searched as it follows from translations.
+void tell_of_rows(const CycleSearchResult& search, DetectResult& result) {
+    if (search.superfluous_seeds == 0) return;
+    result.diagnostics.push_back(
+        {"rows", std::to_string(search.superfluous_seeds) + " of " +
+                     std::to_string(search.superfluous_seeds + search.seeds) +
+                     " near-isosceles triangles in exact rows follow from others and a translation (" +
+                     std::to_string(search.translations) +
+                     " found), and no cycles were searched from them; a tolerance above ten resolutions has all "
+                     "searched"});
 }
 
 /// What was cut off the mirrors, inversions and half-turns.
@@ -181,12 +195,14 @@ void tell_of_pairs(const std::vector<ExactKind>& kinds, DetectResult& result) {
 
 void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
     const auto start = std::chrono::steady_clock::now();
-    CycleSearchResult search = search_cycles(scene, options, monitor, result.diagnostics);
+    const bool exact = is_searched_as_exact(scene, options);
+    CycleSearchResult search = search_cycles(scene, options, exact ? SeedChoice::needed : SeedChoice::all, monitor,
+                                             result.diagnostics);
     result.cycles = std::move(search.cycles);
     result.timing.cycles_s = seconds_since(start);
 
     const auto after_cycles = std::chrono::steady_clock::now();
-    const std::size_t most_exact = asks_for_exact_pairs(scene, options) ? kMostExactPairs : 0;
+    const std::size_t most_exact = exact ? kMostExactPairs : 0;
     SymmetrySearchResult found = detect_symmetries(scene, result.cycles, options.types, most_exact, monitor);
     result.symmetries = std::move(found.symmetries);
     const Significance significance(scene);
@@ -196,6 +212,7 @@ void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& mon
     rank(result.symmetries);
     result.timing.symmetries_s = seconds_since(after_cycles);
 
+    tell_of_rows(search, result);
     tell_of_pairs(found.exact_kinds, result);
     if (found.frustrated > 0)
         result.diagnostics.push_back(

@@ -306,14 +306,12 @@ bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double e
     const std::size_t c = points.size();
     // What could replace a point the last time often can again: most chains end here.
     extremes_.clear();
+    collects_ = false;
     for (std::size_t k = 0; k < c; ++k)
         if (const int q = replaced_by_[static_cast<std::size_t>(points[k])];
             q >= 0 && fits_in_place(points, closed, k, q, eps))
             return false;
-    if (c > kShortSequence) {
-        collect_extremes(points, closed);
-        left_out_ = c;
-    }
+    collects_ = true;
     // From the ends inwards: there the distances say least. The last first: what can replace the fourth point
     // of a chain that was made of three is where it came from.
     for (std::size_t k = 0; k < c; ++k)
@@ -396,10 +394,14 @@ ToleranceInterval ChainOracle::long_interval_with(std::span<const int> points, b
     const auto d = scene_.distances.row(q);
     const std::size_t c = points.size();
     const auto to = [&](std::size_t k) { return d[static_cast<std::size_t>(points[k])]; };
-    if (extremes_.empty()) {  // only one point is asked so far
+    if (!collects_) {
         replaced_sequence_.assign(points.begin(), points.end());
         replaced_sequence_[at] = q;
         return interval(replaced_sequence_, closed);
+    }
+    if (extremes_.empty()) {
+        collect_extremes(points, closed);
+        left_out_ = c;
     }
     if (at != left_out_) leave_out(c, closed, at);
     spans_ = rest_;

@@ -10,6 +10,7 @@
 
 #include "cycles/chain.hpp"
 #include "cycles/chain_memo.hpp"
+#include "cycles/seeds.hpp"
 #include "cycles/types.hpp"
 #include "parallel_for.hpp"
 
@@ -58,8 +59,10 @@ private:
 /// before: the memo only saves time. One for each thread.
 class Expansion {
 public:
-    Expansion(const Scene& scene, const Fourths& fourths, FailedSeeds& failed, RunMonitor& monitor)
+    Expansion(const Scene& scene, const Seeds& seeds, const Fourths& fourths, FailedSeeds& failed,
+              RunMonitor& monitor)
         : scene_(scene),
+          seeds_(seeds),
           fourths_(fourths),
           failed_(failed),
           monitor_(monitor),
@@ -73,20 +76,11 @@ public:
     /// The seeds about `apex` that close or from which the chains of four find nothing; after all of those.
     void resolve_seeds(int apex);
 
-    std::size_t seeds() const { return seeds_; }
+    std::size_t visited() const { return visited_; }
     std::vector<std::pair<CanonicalCycle, TypeSet>>& found() { return found_; }
 
 private:
-    /// (a, apex, c) with a < c.
-    struct Seed {
-        int a;
-        int c;
-        Span links;
-        double ends;       // |a c|
-        double tolerance;  // E_min
-    };
-    template <class Visit>
-    void visit_seeds(int apex, Visit visit);
+    bool is_start(int a, int b, int c, int d) const;
     bool may_be_on_line(const Seed& seed) const;
     bool expand_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links);
     using Ends = std::pair<Candidate, Candidate>;  // the best candidates at the left and at the right end
@@ -104,6 +98,9 @@ private:
 
     /// Ends tie at every step of an exact row; beyond this length it makes no difference which is first.
     static constexpr int kLongestBranching = Chain::kLongestSaved;
+    /// And less where seeds are chosen, in exact rows.
+    static constexpr int kLongestBranchingInRows = 5;
+    int longest_branching() const { return seeds_.listed() ? kLongestBranchingInRows : kLongestBranching; }
     /// Shorter chains are met once only.
     static constexpr std::size_t kShortestRemembered = 5;
 
@@ -127,6 +124,7 @@ private:
     };
 
     const Scene& scene_;
+    const Seeds& seeds_;
     const Fourths& fourths_;
     FailedSeeds& failed_;
     RunMonitor& monitor_;
@@ -149,39 +147,15 @@ private:
     std::vector<Extension> extensions_;
     std::vector<int> longer_;
     std::vector<ChainMemo::Id> passed_;
-    std::size_t seeds_ = 0;
+    std::size_t visited_ = 0;  // seeds
     std::vector<std::pair<CanonicalCycle, TypeSet>> found_;
 };
-
-/// Calls visit(seed) for every seed about `apex`: a and c are at nearly the same distance, so each looks only
-/// at the few that follow it in the list by distance.
-template <class Visit>
-void Expansion::visit_seeds(int apex, Visit visit) {
-    const auto d = scene_.distances.row(apex);
-    const auto others = scene_.distances.nearest_first(apex);
-    for (std::size_t i = 0; i < others.size(); ++i) {
-        if (scene_.label(others[i]) != scene_.label(apex)) continue;
-        if (monitor_.should_stop()) return;
-        const double near = d[static_cast<std::size_t>(others[i])];
-        const auto to_first = scene_.distances.row(others[i]);
-        for (std::size_t j = i + 1; j < others.size(); ++j) {
-            const double far = d[static_cast<std::size_t>(others[j])];
-            if (far - near > scene_.max_tolerance) break;
-            if (scene_.label(others[j]) != scene_.label(apex)) continue;
-            const auto [a, c] = std::minmax(others[i], others[j]);
-            Seed seed{a, c, {near, far}, to_first[static_cast<std::size_t>(others[j])], 0};
-            const Span orbits[] = {seed.links, {seed.ends, seed.ends}};
-            seed.tolerance = tolerance_interval(orbits, scene_.resolution, scene_.max_tolerance).min;
-            if (seed.tolerance <= scene_.max_tolerance) visit(seed);
-        }
-    }
-}
 
 void Expansion::expand_fours(int apex) {
     const auto expand = [&](int a, int c) {
         fours_.clear();
         for (const Candidate* d = fourths_.of(a, apex, c, list_); d->point >= 0; ++d)
-            if (a < d->point) fours_.push_back(*d);
+            if (a < d->point && is_start(a, apex, c, d->point)) fours_.push_back(*d);
         if (fours_.empty()) return;
         const SeedLink backwards = fourths_.link(c, apex, a);
         for (const Candidate& d : fours_) {
@@ -191,23 +165,28 @@ void Expansion::expand_fours(int apex) {
             failed_.add(d.point, c, apex);
         }
     };
-    visit_seeds(apex, [&](const Seed& seed) {
-        ++seeds_;
+    seeds_.visit(apex, [&](const Seed& seed) {
+        ++visited_;
         expand(seed.a, seed.c);
         expand(seed.c, seed.a);
     });
 }
 
+/// With both seeds of a chain of four needed, and not both far from the middle of their row.
+bool Expansion::is_start(int a, int b, int c, int d) const {
+    return !seeds_.superfluous(b, c, d) && !(seeds_.repeats(a, b, c) && seeds_.repeats(b, c, d));
+}
+
 /// A path on which nothing is unambiguous and has a type falls back to the chain of four and then to the
 /// seed.
 void Expansion::resolve_seeds(int apex) {
-    visit_seeds(apex, [&](const Seed& seed) {
+    seeds_.visit(apex, [&](const Seed& seed) {
         const auto [a, c, links, ends, tolerance] = seed;
         const int points[] = {a, apex, c};
-        // An equilateral triangle closes at once; it is met from all three apexes.
+        // An equilateral triangle closes at once; it is met from all three apexes, or of the chosen ones from some.
         Span ring = links;
         ring.include(ends);
-        if (apex < a && ring.spread() <= scene_.max_tolerance)
+        if ((apex < a || seeds_.listed()) && ring.spread() <= scene_.max_tolerance)
             resolve_closed(points, Fingerprint(points, true), std::max(ring.spread(), scene_.resolution));
         const bool alone = fourths_.none(a, apex, c) && fourths_.none(c, apex, a);
         // Where nothing can be added it must be on a line: quicker to ask than C2.
@@ -286,7 +265,7 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
         const double best = std::min(right.tolerance, left.tolerance);
         const bool closes = closed <= std::min(best, scene_.max_tolerance);
         const bool ends_here = closes || best > scene_.max_tolerance;
-        const bool parts = right.tolerance == left.tolerance && chain_.size() <= kLongestBranching;
+        const bool parts = right.tolerance == left.tolerance && chain_.size() <= longest_branching();
         if (ends_here || parts) {
             found = ends_here ? closes && resolve_closed(chain_.points(), ring, closed)
                               : follow_both(left, right);
@@ -312,10 +291,12 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
 }
 
 /// The end with the better candidate, in a way that does not depend on which end is called left: what is
-/// remembered of a chain holds for its reverse.
+/// remembered of a chain holds for its reverse. In a row all are equally good. That it grows next to the lower of
+/// two scattered numbers makes parts of it meet soon: of n points they are n log n parts and not n^2.
 End Expansion::better_end(const Candidate& left, const Candidate& right) const {
-    if (left != right) return right < left ? End::right : End::left;
-    return chain_.points().front() < chain_.points().back() ? End::right : End::left;
+    if (left.tolerance != right.tolerance) return right.tolerance < left.tolerance ? End::right : End::left;
+    const auto scattered = [](int point) { return static_cast<std::uint32_t>(point + 1) * 2654435769U; };
+    return scattered(chain_.points().front()) < scattered(chain_.points().back()) ? End::left : End::right;
 }
 
 /// Where both ends are equally good, a chain and its reverse part ways, and both are followed: true if there
@@ -420,11 +401,13 @@ bool Expansion::extend(double& tolerance) {
 
 }  // namespace
 
-CycleSearchResult detect_cycles(const Scene& scene, RunMonitor& monitor) {
-    const Fourths fourths(scene, monitor);
+CycleSearchResult detect_cycles(const Scene& scene, SeedChoice choice, RunMonitor& monitor) {
+    const Rows rows = choice == SeedChoice::all ? Rows() : Rows(scene);
+    const Seeds seeds(scene, rows, monitor);
+    const Fourths fourths(scene, seeds, monitor);
     FailedSeeds failed(fourths);
     tbb::enumerable_thread_specific<Expansion> expansions(
-        [&] { return Expansion(scene, fourths, failed, monitor); });
+        [&] { return Expansion(scene, seeds, fourths, failed, monitor); });
     parallel_for(scene.size(), [&](int apex) {
         expansions.local().expand_fours(apex);
         monitor.advance();
@@ -435,9 +418,11 @@ CycleSearchResult detect_cycles(const Scene& scene, RunMonitor& monitor) {
     });
 
     CycleSearchResult result;
+    result.superfluous_seeds = seeds.left_out();
+    result.translations = rows.translations();
     std::vector<std::pair<CanonicalCycle, TypeSet>> found;
     for (Expansion& expansion : expansions) {
-        result.seeds += expansion.seeds();
+        result.seeds += expansion.visited();
         std::move(expansion.found().begin(), expansion.found().end(), std::back_inserter(found));
     }
     std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

@@ -8,14 +8,22 @@
 
 namespace insym {
 
-struct CycleSearchResult {
-    std::size_t seeds = 0;      ///< near-isosceles triangles that satisfy C1
-    std::vector<Cycle> cycles;  ///< in canonical form and order
+/// Which seeds a search starts from.
+enum class SeedChoice {
+    all,
+    needed,  ///< not those that follow from others and a translation of many points (class Rows)
 };
 
-/// All cycles of three points and more that branch out from the seeds. Parallel over the apexes of
+struct CycleSearchResult {
+    std::size_t seeds = 0;              ///< near-isosceles triangles that satisfy C1, where the search started
+    std::size_t superfluous_seeds = 0;  ///< near-isosceles triangles that were left out
+    std::size_t translations = 0;       ///< from which those follow
+    std::vector<Cycle> cycles;          ///< in canonical form and order
+};
+
+/// All cycles of three points and more that branch out from the chosen seeds. Parallel over the apexes of
 /// the seeds; the same result for any number of threads. Stops early, with the cycles found so far,
 /// when `monitor` says so; advances its stage twice for each point.
-CycleSearchResult detect_cycles(const Scene& scene, RunMonitor& monitor);
+CycleSearchResult detect_cycles(const Scene& scene, SeedChoice choice, RunMonitor& monitor);
 
 }  // namespace insym

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <optional>
 
 #include "cycles/tolerance_interval.hpp"
 #include "parallel_for.hpp"
@@ -80,24 +81,55 @@ private:
     std::vector<std::uint64_t> bits_;
 };
 
-Fourths::Fourths(const Scene& scene, RunMonitor& monitor)
-    : scene_(scene), stored_(true), apexes_(static_cast<std::size_t>(scene.size())) {
-    const Mates mates(scene);
+Fourths::Fourths(const Scene& scene, const Seeds& seeds, RunMonitor& monitor)
+    : scene_(scene),
+      listed_(seeds.listed() ? &seeds : nullptr),
+      stored_(true),
+      apexes_(static_cast<std::size_t>(scene.size())) {
+    build_all(monitor);
+    if (stored_) parallel_for(scene.size(), [&](int b) { link_seeds(b); });
+    for (Apex& apex : apexes_) {
+        apex.first = seeds_;
+        seeds_ += apex.slots.size();
+    }
+}
+
+void Fourths::build_all(RunMonitor& monitor) {
+    std::optional<Mates> mates;
+    if (listed_ == nullptr) mates.emplace(scene_);
     std::atomic<std::size_t> stored{0};
-    parallel_for(scene.size(), [&](int b) {
+    parallel_for(scene_.size(), [&](int b) {
         if (stored.load(std::memory_order_relaxed) > kMostStored) return;
-        build(b, mates, monitor);
+        if (mates)
+            build(b, *mates, monitor);
+        else
+            build_listed(b, monitor);
         stored += apexes_[static_cast<std::size_t>(b)].fourths.size();
     });
     if (stored > kMostStored || monitor.should_stop()) {
         stored_ = false;
         apexes_ = {};
     }
-    if (stored_) parallel_for(scene.size(), [&](int b) { link_seeds(b); });
-    for (Apex& apex : apexes_) {
-        apex.first = seeds_;
-        seeds_ += apex.slots.size();
+}
+
+/// Few seeds: each looks for its own.
+void Fourths::build_listed(int b, RunMonitor& monitor) {
+    Apex& apex = apexes_[static_cast<std::size_t>(b)];
+    std::vector<Slot> seeds;
+    List fourths;
+    apex.fourths.push_back(kNobody);
+    const auto add = [&](int a, int c) {
+        make(a, b, c, fourths);
+        if (fourths.size() == 1) return;
+        seeds.push_back({a, c, static_cast<SeedLink>(apex.fourths.size())});
+        apex.fourths.insert(apex.fourths.end(), fourths.begin(), fourths.end());
+    };
+    for (const Seed& seed : listed_->of(b)) {
+        if (apex.fourths.size() > kMostStored || monitor.should_stop()) return;
+        add(seed.a, seed.c);
+        add(seed.c, seed.a);
     }
+    fill_table(apex, seeds);
 }
 
 void Fourths::build(int b, const Mates& mates, RunMonitor& monitor) {
@@ -157,7 +189,7 @@ void Fourths::link_seeds(int b) {
 }
 
 const Candidate* Fourths::of(int a, int b, int c, List& scratch) const {
-    if (stored_) return of(b, link(a, b, c));
+    if (const SeedLink known = link(a, b, c); known != kUnknownLink) return of(b, known);
     make(a, b, c, scratch);
     return scratch.data();
 }
@@ -165,7 +197,8 @@ const Candidate* Fourths::of(int a, int b, int c, List& scratch) const {
 SeedLink Fourths::link(int a, int b, int c) const {
     if (!stored_) return kUnknownLink;
     const Slot* slot = find(a, b, c);
-    return slot == nullptr ? kEmpty : slot->first;
+    if (slot != nullptr) return slot->first;
+    return listed_ != nullptr && listed_->superfluous(a, b, c) ? kUnknownLink : kEmpty;
 }
 
 std::ptrdiff_t Fourths::seed(int a, int b, int c) const {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "cycles/seeds.hpp"
 #include "run_monitor.hpp"
 #include "scene.hpp"
 
@@ -41,7 +42,7 @@ class Fourths {
 public:
     using List = std::vector<Candidate>;
 
-    Fourths(const Scene& scene, RunMonitor& monitor);
+    Fourths(const Scene& scene, const Seeds& seeds, RunMonitor& monitor);
     /// Stores nothing, for few questions.
     explicit Fourths(const Scene& scene) : scene_(scene) {}
 
@@ -82,7 +83,9 @@ private:
     };
 
     class Mates;
+    void build_all(RunMonitor& monitor);
     void build(int b, const Mates& mates, RunMonitor& monitor);
+    void build_listed(int b, RunMonitor& monitor);
     void link_seeds(int b);
     void fill_table(Apex& apex, const std::vector<Slot>& seeds) const;
     const Slot* find(int a, int b, int c) const;
@@ -93,6 +96,7 @@ private:
     }
 
     const Scene& scene_;
+    const Seeds* listed_ = nullptr;  // the seeds, where they are not all there are
     bool stored_ = false;
     std::size_t seeds_ = 0;
     std::vector<Apex> apexes_;

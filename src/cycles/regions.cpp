@@ -48,11 +48,12 @@ PointSet part_of(const PointSet& all, const std::vector<int>& chosen) {
 }
 
 /// The cycles of one slab, with the indices of all points. As `slab` ascends, canonical stays canonical.
-CycleSearchResult search_slab(const Scene& scene, const std::vector<int>& slab, RunMonitor& monitor) {
+CycleSearchResult search_slab(const Scene& scene, const std::vector<int>& slab, SeedChoice choice,
+                              RunMonitor& monitor) {
     const PointSet points = part_of(scene.points, slab);
     const Distances distances(points.positions);
     const PointScene part{points, scene.diameter, scene.resolution, scene.max_tolerance};
-    CycleSearchResult found = detect_cycles({part, distances}, monitor);
+    CycleSearchResult found = detect_cycles({part, distances}, choice, monitor);
     for (Cycle& cycle : found.cycles)
         for (int& p : cycle.points) p = slab[static_cast<std::size_t>(p)];
     return found;
@@ -87,18 +88,21 @@ std::vector<std::vector<int>> slabs(const PointScene& scene, int count, int axis
     return result;
 }
 
-RegionSearchResult detect_cycles_in_regions(const Scene& scene, const Regions& regions, RunMonitor& monitor) {
+RegionSearchResult detect_cycles_in_regions(const Scene& scene, const Regions& regions, SeedChoice choice,
+                                            RunMonitor& monitor) {
     RegionSearchResult result;
     result.axis = regions.axis.value_or(longest_axis(scene));
     if (regions.count == 1) {
-        result.search = detect_cycles(scene, monitor);
+        result.search = detect_cycles(scene, choice, monitor);
         return result;
     }
     std::vector<Cycle>& cycles = result.search.cycles;
     for (const std::vector<int>& slab : slabs(scene, regions.count, result.axis)) {
         if (slab.size() < 3) continue;
-        CycleSearchResult found = search_slab(scene, slab, monitor);
+        CycleSearchResult found = search_slab(scene, slab, choice, monitor);
         result.search.seeds += found.seeds;
+        result.search.superfluous_seeds += found.superfluous_seeds;
+        result.search.translations += found.translations;
         std::move(found.cycles.begin(), found.cycles.end(), std::back_inserter(cycles));
     }
     std::sort(cycles.begin(), cycles.end(), [](const Cycle& a, const Cycle& b) {

@@ -23,6 +23,7 @@ std::vector<std::vector<int>> slabs(const PointScene& scene, int count, int axis
 /// are ambiguous among all points (C2; C3 is asked of the slab alone). One slab gives what detect_cycles
 /// gives. Cost: the squares of the sizes of the slabs in place of n^2, and a shell of points for each point
 /// of a cycle.
-RegionSearchResult detect_cycles_in_regions(const Scene& scene, const Regions& regions, RunMonitor& monitor);
+RegionSearchResult detect_cycles_in_regions(const Scene& scene, const Regions& regions, SeedChoice choice,
+                                            RunMonitor& monitor);
 
 }  // namespace insym

@@ -1,59 +1,81 @@
 #include "points/distances.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "parallel_for.hpp"
 #include "points/diameter.hpp"
 
 namespace insym {
 
+/// Each coordinate by itself, so that several points are computed at once.
+struct Distances::Coordinates {
+    explicit Coordinates(const std::vector<Point>& positions) {
+        for (std::size_t k = 0; k < 3; ++k)
+            for (const Point& p : positions) axes[k].push_back(p[k]);
+    }
+    std::array<std::vector<double>, 3> axes;
+};
+
 Distances::Distances(const std::vector<Point>& positions, const std::vector<char>& sorted)
     : n_(static_cast<int>(positions.size())),
       steps_(std::max(n_, 16)),
       // Every distance falls inside the directory, the diameter just so.
       directory_scale_(steps_ / (diameter(positions) * (1 + 1e-9))),
-      matrix_(start(n_, n_)),
+      matrix_(std::make_unique_for_overwrite<double[]>(start(n_, n_))),
       place_(positions.size()) {
     int places = 0;
     for (std::size_t i = 0; i < positions.size(); ++i) place_[i] = sorted[i] != 0 ? places++ : -1;
-    sorted_.resize(start(places, n_ - 1));
-    order_.resize(start(places, n_ - 1));
-    directory_.resize(start(places, steps_));
+    sorted_ = std::make_unique_for_overwrite<double[]>(start(places, n_ - 1));
+    order_ = std::make_unique_for_overwrite<int[]>(start(places, n_ - 1));
+    directory_ = std::make_unique_for_overwrite<int[]>(start(places, steps_));
+    const Coordinates coordinates(positions);
     parallel_for(n_, [&](int i) {
-        double* out = matrix_.data() + start(i, n_);
-        for (std::size_t j = 0; j < positions.size(); ++j)
-            out[j] = distance(positions[static_cast<std::size_t>(i)], positions[j]);
+        fill_row(i, coordinates);
         if (place_of(i) >= 0) sort_row(i);
     });
+}
+
+/// The formula of distance().
+void Distances::fill_row(int i, const Coordinates& of) {
+    double* out = matrix_.get() + start(i, n_);
+    const double *x = of.axes[0].data(), *y = of.axes[1].data(), *z = of.axes[2].data();
+    for (int j = 0; j < n_; ++j) {
+        const double dx = x[i] - x[j], dy = y[i] - y[j], dz = z[i] - z[j];
+        out[j] = std::sqrt(dx * dx + dy * dy + dz * dz);
+    }
 }
 
 /// Into the steps of the directory first, where few are left to be told apart.
 void Distances::sort_row(int i) {
     const std::span<const double> distance = row(i);
     const int place = place_of(i);
-    double* sorted = sorted_.data() + start(place, n_ - 1);
-    int* order = order_.data() + start(place, n_ - 1);
-    int* directory = directory_.data() + start(place, steps_);
+    double* sorted = sorted_.get() + start(place, n_ - 1);
+    int* order = order_.get() + start(place, n_ - 1);
+    int* directory = directory_.get() + start(place, steps_);
     const auto step_of = [&](int j) {
         return static_cast<std::size_t>(distance[static_cast<std::size_t>(j)] * directory_scale_);
     };
-    std::vector<int> next(static_cast<std::size_t>(steps_) + 1, 0);
+    thread_local std::vector<int> next;
+    thread_local std::vector<std::pair<double, int>> items;
+    next.assign(static_cast<std::size_t>(steps_) + 1, 0);
+    items.resize(static_cast<std::size_t>(n_));
     for (int j = 0; j < n_; ++j)
         if (j != i) ++next[step_of(j) + 1];
     std::partial_sum(next.begin(), next.end(), next.begin());
     std::copy(next.begin(), next.end() - 1, directory);
     for (int j = 0; j < n_; ++j)
-        if (j != i) order[next[step_of(j)]++] = j;
-    const auto before = [&](int a, int b) {
-        const double x = distance[static_cast<std::size_t>(a)], y = distance[static_cast<std::size_t>(b)];
-        return x != y ? x < y : a < b;
-    };
+        if (j != i)
+            items[static_cast<std::size_t>(next[step_of(j)]++)] = {distance[static_cast<std::size_t>(j)], j};
     for (int s = 0; s < steps_; ++s) {
-        int *first = order + directory[s], *last = order + next[static_cast<std::size_t>(s)];
-        if (last - first > 1 && !std::is_sorted(first, last, before)) std::sort(first, last, before);
+        auto *first = items.data() + directory[s], *last = items.data() + next[static_cast<std::size_t>(s)];
+        if (last - first > 1) std::sort(first, last);
     }
-    for (int k = 0; k < n_ - 1; ++k) sorted[k] = distance[static_cast<std::size_t>(order[k])];
+    for (int k = 0; k < n_ - 1; ++k) std::tie(sorted[k], order[k]) = items[static_cast<std::size_t>(k)];
 }
 
 }  // namespace insym

@@ -4,6 +4,7 @@
 #include "insym/point_set.hpp"
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -23,19 +24,19 @@ public:
 
     /// The distances of point i to all points, by index.
     std::span<const double> row(int i) const {
-        return {matrix_.data() + start(i, n_), static_cast<std::size_t>(n_)};
+        return {matrix_.get() + start(i, n_), static_cast<std::size_t>(n_)};
     }
     /// All points but i itself, nearest first, equal distances by index. Of a sorted point only, as below.
     std::span<const int> nearest_first(int i) const {
-        return {order_.data() + start(place_of(i), n_ - 1), static_cast<std::size_t>(n_ - 1)};
+        return {order_.get() + start(place_of(i), n_ - 1), static_cast<std::size_t>(n_ - 1)};
     }
 
     /// Calls visit(point, distance) for every other point whose distance to i is in [low, high], nearest
     /// first, until it returns false. O(1) to find the first.
     template <class Visit>
     void visit_shell(int i, double low, double high, Visit visit) const {
-        const double* d = sorted_.data() + start(place_of(i), n_ - 1);
-        const int* point = order_.data() + start(place_of(i), n_ - 1);
+        const double* d = sorted_.get() + start(place_of(i), n_ - 1);
+        const int* point = order_.get() + start(place_of(i), n_ - 1);
         const double place = low * directory_scale_;
         if (place >= steps_) return;
         int k = place > 0 ? directory_[start(place_of(i), steps_) + static_cast<std::size_t>(place)] : 0;
@@ -45,6 +46,8 @@ public:
     }
 
 private:
+    struct Coordinates;
+    void fill_row(int i, const Coordinates& of);
     void sort_row(int i);
     int place_of(int i) const { return place_[static_cast<std::size_t>(i)]; }
 
@@ -55,11 +58,12 @@ private:
     int n_ = 0;
     int steps_ = 0;  // of distance, whose first points are known: about one for each point
     double directory_scale_ = 0;
-    std::vector<double> matrix_;
-    std::vector<int> place_;      // of each sorted point in what follows
-    std::vector<double> sorted_;  // the distances in the order of order_
-    std::vector<int> order_;
-    std::vector<int> directory_;  // for each point and step: the first place in its order at or beyond
+    // Not initialised: the threads that fill them touch their pages first.
+    std::unique_ptr<double[]> matrix_;
+    std::vector<int> place_;             // of each sorted point in what follows
+    std::unique_ptr<double[]> sorted_;   // the distances in the order of order_
+    std::unique_ptr<int[]> order_;
+    std::unique_ptr<int[]> directory_;  // for each point and step: the first place in its order at or beyond
 };
 
 }  // namespace insym

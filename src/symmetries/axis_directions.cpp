@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostPoints = 256;
+constexpr std::size_t kMostPoints = 128;
 
 /// So many others of equal length a segment is compared with.
 constexpr std::size_t kMostMates = 8;

@@ -18,11 +18,11 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostVotingPairs = 1'500'000;
+constexpr std::size_t kMostVotingPairs = 800'000;
 constexpr std::size_t kMostOfALevel = 200'000;  // of pairs at one height
 
 /// Half-turns are looked for about so many directions.
-constexpr std::size_t kDirections = 64;
+constexpr std::size_t kDirections = 32;
 
 /// An isometry and how many pairs suggest it.
 struct Suggestion {
