@@ -19,9 +19,9 @@ constexpr std::size_t kMostAsked = 64;  // of the vectors that most pairs have
 constexpr std::size_t kMostTranslations = 8;
 constexpr int kLeastShare = 16;  // one in so many points lies in the rows of a translation
 
-/// So far from the middle, in |t|, a seed is one of many copies: three of them stay, or five to start from.
-constexpr double kMiddleCopies = 1.5;
-constexpr double kMiddleStarts = 2.5;
+/// So near to the middle, in |t|, are the copies of a link that stand for all of them: one, or five to start from.
+constexpr double kOneCopy = 0.5;
+constexpr double kFiveCopies = 2.5;
 
 /// What a translation does to the points.
 struct Carried {
@@ -131,10 +131,15 @@ Rows::Rows(const Scene& scene) : points_(&scene.points) {
         const Carried& c = chosen[k];
         const double length = c.vector.norm();
         translations_.push_back({point_of(c.vector), length * length, 4 * scene.resolution * length, {}});
-        for (const Carried& other : all)
-            if (std::abs(other.vector.norm() - length) <= 4 * scene.resolution &&
-                !is_multiple(other.vector, c.vector, scene.resolution))
-                translations_.back().as_long.push_back(point_of(other.vector));
+        for (const Carried& other : all) {
+            if (std::abs(other.vector.norm() - length) > 4 * scene.resolution ||
+                is_multiple(other.vector, c.vector, scene.resolution))
+                continue;
+            const auto place = std::find_if(chosen.begin(), chosen.end(),
+                                            [&](const Carried& o) { return o.vector == other.vector; });
+            translations_.back().mates.push_back(
+                {point_of(other.vector), place == chosen.end() ? -1 : static_cast<int>(place - chosen.begin())});
+        }
         const auto here = [&](int i) -> Place& {
             return places_[static_cast<std::size_t>(i) * chosen.size() + k];
         };
@@ -153,16 +158,22 @@ Rows::Rows(const Scene& scene) : points_(&scene.points) {
 bool Rows::superfluous(int a, int b, int c) const {
     for (std::size_t k = 0; k < translations_.size(); ++k) {
         const Seen s = seen(k, a, b, c);
-        if (s.a.row < 0 || s.b.row < 0 || s.c.row < 0 || may_exchange(s.t, a, b, c)) continue;
+        if (s.a.row < 0 || s.b.row < 0 || s.c.row < 0) continue;
         const double first = s.b.height - s.a.height, second = s.c.height - s.b.height;
+        const auto mates = [&](auto is) { return std::any_of(s.t.mates.begin(), s.t.mates.end(), is); };
+        const auto exchanged = [&](const Mate& mate) { return may_exchange(mate, a, b, c); };
+        const auto may_as_well = [&](const Mate& mate) {
+            return exchanged(mate) && advances_alike(s.t, mate, a, b, c);
+        };
         bool found = false;
         if (std::abs(first - second) <= s.t.slack) {
             const bool longer = std::abs(first) > s.t.square + s.t.slack;
-            found = longer && (first > 0 ? s.a.ahead && s.c.behind : s.a.behind && s.c.ahead);
+            found = longer && (first > 0 ? s.a.ahead && s.c.behind : s.a.behind && s.c.ahead) &&
+                    !mates(may_as_well);
         } else if (std::abs(first + second) <= s.t.slack) {
-            found = off_middle(s);
-        } else if (s.t.as_long.empty()) {
-            found = is_copy(s, kMiddleCopies);
+            found = off_middle(s) && !mates(may_as_well);
+        } else {
+            found = is_copy(s, kOneCopy) && !mates(exchanged);
         }
         if (found) return true;
     }
@@ -174,24 +185,28 @@ bool Rows::repeats(int a, int b, int c) const {
         const Seen s = seen(k, a, b, c);
         if (s.a.row < 0 || s.a.row != s.c.row || s.b.row < 0) continue;
         if (std::abs(s.c.height - s.a.height) > 2 * s.t.square + s.t.slack) continue;
-        if (std::abs(2 * s.b.height - s.a.height - s.c.height) <= s.t.slack && is_copy(s, kMiddleStarts))
+        if (std::abs(2 * s.b.height - s.a.height - s.c.height) <= s.t.slack && is_copy(s, kFiveCopies))
             return true;
     }
     return false;
 }
 
-/// Can an isometry that takes A to B and B to C take t to a translation that is as long, or that one to t? Then
-/// the second link advances along the one as the first does along the other, up to the sign.
-bool Rows::may_exchange(const Translation& t, int a, int b, int c) const {
-    if (t.as_long.empty()) return false;
+/// Can an isometry that takes A to B and B to C take rows along t to rows of the mate, or those to these? Then two
+/// of the points at least lie in rows of both.
+bool Rows::may_exchange(const Mate& mate, int a, int b, int c) const {
+    if (mate.place < 0) return true;
+    const auto in_row = [&](int i) { return place(i, static_cast<std::size_t>(mate.place)).row >= 0; };
+    return in_row(b) && (in_row(a) || in_row(c));
+}
+
+/// If it does, the second link advances along the one as the first does along the other, up to the sign.
+bool Rows::advances_alike(const Translation& t, const Mate& mate, int a, int b, int c) const {
     const auto& p = points_->positions;
     const Point &from = p[static_cast<std::size_t>(a)], &apex = p[static_cast<std::size_t>(b)],
                 &to = p[static_cast<std::size_t>(c)];
     const auto alike = [&](double x, double y) { return std::abs(std::abs(x) - std::abs(y)) <= t.slack; };
-    return std::any_of(t.as_long.begin(), t.as_long.end(), [&](const Point& other) {
-        return alike(along(t.vector, from, apex), along(other, apex, to)) ||
-               alike(along(other, from, apex), along(t.vector, apex, to));
-    });
+    return alike(along(t.vector, from, apex), along(mate.vector, apex, to)) ||
+           alike(along(mate.vector, from, apex), along(t.vector, apex, to));
 }
 
 /// Are the middles of both links on one side of those of the rows, and is the point there that the one nearest
@@ -205,14 +220,15 @@ bool Rows::off_middle(const Seen& s) {
     return there >= s.b.low - s.t.slack && there <= s.b.high + s.t.slack;
 }
 
-/// Does a translation bring the seed, which is farther off than that, nearer to the middles of its rows?
-bool Rows::is_copy(const Seen& s, double farther_than) {
-    const double off =
-        (s.a.height + s.b.height + s.c.height - s.a.middle - s.b.middle - s.c.middle) / 3;
-    // The middle of a longer chain can be so far from that of its seeds.
-    const auto [low, high] = std::minmax({s.a.height, s.b.height, s.c.height});
-    if (std::abs(off) <= farther_than * s.t.square + (high - low) / 4 + s.t.slack) return false;
-    return off > 0 ? s.a.behind && s.b.behind && s.c.behind : s.a.ahead && s.b.ahead && s.c.ahead;
+/// Is the middle of neither link, each of which can be the middle one of a chain of four, so near to those of
+/// the rows, and does a translation bring it nearer?
+bool Rows::is_copy(const Seen& s, double near) {
+    const auto far = [&](const Place& from, const Place& to) {
+        const double off = (from.height + to.height - from.middle - to.middle) / 2;
+        if (std::abs(off) <= near * s.t.square + s.t.slack) return false;
+        return off > 0 ? s.a.behind && s.b.behind && s.c.behind : s.a.ahead && s.b.ahead && s.c.ahead;
+    };
+    return far(s.a, s.b) && far(s.b, s.c);
 }
 
 }  // namespace insym

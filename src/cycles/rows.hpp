@@ -15,8 +15,8 @@ namespace insym {
 ///     of a shorter step, and f = f' T: every second pin, the glide of a mirror and a row;
 ///   - turn it over: what the first link advances, the second goes back. f = T^k f' with the f' whose middle
 ///     is nearest to the middles of the rows;
-///   - or, where no other translation is as long, carry no row along t: f is a copy T^k f' T^-k, and those
-///     nearest to the middles of the rows stand for the others.
+///   - or, unless a translation as long makes rows there, carry no row along t: f is a copy T^k f' T^-k, and
+///     those nearest to the middles of the rows stand for the others.
 /// So a search without the superfluous ones finds of each family { T^i f T^j } some members, all of whose
 /// cycles it finds. Immutable after construction.
 ///
@@ -38,11 +38,16 @@ public:
     bool repeats(int a, int b, int c) const;
 
 private:
+    /// Another translation that is as long.
+    struct Mate {
+        Point vector;
+        int place = -1;  ///< among translations_, or none
+    };
     struct Translation {
         Point vector;
-        double square = 0;            ///< of |t|
-        double slack = 0;             ///< by which equal heights may differ
-        std::vector<Point> as_long;  ///< other translations, in each direction
+        double square = 0;  ///< of |t|
+        double slack = 0;   ///< by which equal heights may differ
+        std::vector<Mate> mates;
     };
     /// A point as a translation sees it. Heights are along t, times |t|.
     struct Place {
@@ -62,9 +67,10 @@ private:
     const Place& place(int point, std::size_t k) const {
         return places_[static_cast<std::size_t>(point) * translations_.size() + k];
     }
-    bool may_exchange(const Translation& t, int a, int b, int c) const;
+    bool may_exchange(const Mate& mate, int a, int b, int c) const;
+    bool advances_alike(const Translation& t, const Mate& mate, int a, int b, int c) const;
     static bool off_middle(const Seen& s);
-    static bool is_copy(const Seen& s, double farther_than);
+    static bool is_copy(const Seen& s, double near);
 
     const PointSet* points_ = nullptr;
     std::vector<Translation> translations_;
