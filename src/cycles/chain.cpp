@@ -372,6 +372,7 @@ bool ChainOracle::fits_in_place(std::span<const int> points, bool closed, std::s
                                         ? short_interval_with(points, closed, at, q, eps)
                                         : long_interval_with(points, closed, at, q, eps);
     if (!(other.min <= eps && eps < other.max)) return false;
+    replaced_point_ = points[at];
     replaced_by_[static_cast<std::size_t>(points[at])] = q;
     return true;
 }

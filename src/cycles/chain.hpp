@@ -101,6 +101,8 @@ public:
     double closed_tolerance(const Chain& chain);
     /// C2: no outside point can replace a point of the sequence with its E_min, `eps`, still valid.
     bool unambiguous(std::span<const int> points, bool closed, double eps);
+    /// Of the last sequence that was not unambiguous: the point that another can replace.
+    int replaced_point() const { return replaced_point_; }
 
     /// Every point that extends `end` of a chain of three and more with C1 true, least E_min first, ties by
     /// index.
@@ -149,6 +151,7 @@ private:
     std::vector<int> replaced_sequence_;
     std::size_t left_out_ = 0;      // the place of a point
     std::vector<Span> rest_;        // the orbits without the distances of that point
+    int replaced_point_ = -1;
     std::vector<int> replaced_by_;  // of each point: what could replace it the last time, or -1
 };
 

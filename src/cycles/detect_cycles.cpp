@@ -133,6 +133,12 @@ private:
     ChainMemo memo_;
     ChainMemo rings_;
     Chain chain_;
+    /// A point of a chain that another can replace at this tolerance (C2).
+    struct Replaced {
+        int point = -1;
+        double tolerance = 0;
+    };
+    Replaced replaced_;               // of the chain that was asked last, if C2 was
     std::vector<Step> path_;          // from the start to chain_
     std::optional<bool> four_alone_;  // does the chain of four at hand become a cycle?
     Fourths::List list_;
@@ -281,10 +287,19 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
     }
     // Back along the path, each chain a window of the last.
     std::span<const int> window = chain_.points();
+    Replaced replaced;
     for (; path_.size() > first_step; path_.pop_back()) {
         const auto [id, added_at, window_tolerance] = path_.back();
+        const int left_out = added_at == End::right ? window.back() : window.front();
         window = added_at == End::right ? window.first(window.size() - 1) : window.subspan(1);
-        found = found || resolve_open(window, window_tolerance, id);
+        if (replaced.point == left_out) replaced = {};
+        if (!found && replaced.point >= 0 && replaced.tolerance == window_tolerance) {
+            // What is valid for a chain is valid for its parts, so the same point can be replaced here.
+            if (id != kNone) memo_[id].alone = Answer::no;
+        } else if (!found) {
+            found = resolve_open(window, window_tolerance, id);
+            replaced = replaced_;
+        }
         if (id != kNone) memo_[id].path = answer(found);
     }
     return found;
@@ -325,13 +340,16 @@ bool Expansion::resolve_open(std::span<const int> chain, double tolerance) {
 /// Does this chain, with E_min `tolerance`, by itself become a cycle? `id`: its number in the memo.
 bool Expansion::resolve_open(std::span<const int> chain, double tolerance, ChainMemo::Id id) {
     passed_.clear();
+    replaced_ = {};
     if (id != kNone) {
         if (const auto known = memo_[id].alone; known != Answer::unknown) return known == Answer::yes;
         passed_.push_back(id);
     } else if (chain.size() == 4 && four_alone_) {
         return *four_alone_;
     }
-    const bool found = oracle_.unambiguous(chain, false, tolerance) && become_cycle(chain, tolerance);
+    const bool unambiguous = oracle_.unambiguous(chain, false, tolerance);
+    if (!unambiguous) replaced_ = {oracle_.replaced_point(), tolerance};
+    const bool found = unambiguous && become_cycle(chain, tolerance);
     for (const ChainMemo::Id p : passed_) memo_[p].alone = answer(found);
     if (chain.size() == 4) four_alone_ = found;
     return found;

@@ -124,8 +124,9 @@ void Fourths::build_listed(int b, RunMonitor& monitor) {
         seeds.push_back({a, c, static_cast<SeedLink>(apex.fourths.size())});
         apex.fourths.insert(apex.fourths.end(), fourths.begin(), fourths.end());
     };
+    if (monitor.should_stop()) return;
     for (const Seed& seed : listed_->of(b)) {
-        if (apex.fourths.size() > kMostStored || monitor.should_stop()) return;
+        if (apex.fourths.size() > kMostStored) return;
         add(seed.a, seed.c);
         add(seed.c, seed.a);
     }
@@ -139,8 +140,9 @@ void Fourths::build(int b, const Mates& mates, RunMonitor& monitor) {
     apex.fourths.push_back(kNobody);
     const double reach = reach_of(scene_);
     for (int c = 0; c < scene_.size(); ++c) {
+        constexpr int kAskedOnce = 16;  // a look at the clock takes as long as a few sides
+        if (apex.fourths.size() > kMostStored || (c % kAskedOnce == 0 && monitor.should_stop())) return;
         if (!mates.has(b, c) || !mates.has(c, b)) continue;
-        if (apex.fourths.size() > kMostStored || monitor.should_stop()) return;
         wings(scene_, c, b, left);
         wings(scene_, b, c, right);
         const double link = scene_.distances(b, c);

@@ -16,12 +16,12 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kMostVotingPairs = 100'000;
 constexpr std::size_t kMostAsked = 64;  // of the vectors that most pairs have
-constexpr std::size_t kMostTranslations = 8;
+constexpr std::size_t kMostTranslations = 4;
 constexpr int kLeastShare = 16;  // one in so many points lies in the rows of a translation
 
 /// So near to the middle, in |t|, are the copies of a link that stand for all of them: one, or five to start from.
 constexpr double kOneCopy = 0.5;
-constexpr double kFiveCopies = 2.5;
+constexpr double kFiveCopies = 1.0;
 
 /// What a translation does to the points.
 struct Carried {

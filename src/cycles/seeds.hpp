@@ -51,6 +51,8 @@ private:
     template <class Ask, class Visit>
     void find(int apex, Ask ask, Visit visit) const;
 
+    static constexpr std::size_t kAskedOnce = 64;  // of the others; a look at the clock takes as long as some
+
     const Scene& scene_;
     const Rows& rows_;
     RunMonitor& monitor_;
@@ -65,7 +67,7 @@ void Seeds::find(int apex, Ask ask, Visit visit) const {
     const auto others = scene_.distances.nearest_first(apex);
     for (std::size_t i = 0; i < others.size(); ++i) {
         if (scene_.label(others[i]) != scene_.label(apex)) continue;
-        if (monitor_.should_stop()) return;
+        if (i % kAskedOnce == 0 && monitor_.should_stop()) return;
         const double near = d[static_cast<std::size_t>(others[i])];
         const auto to_first = scene_.distances.row(others[i]);
         for (std::size_t j = i + 1; j < others.size(); ++j) {
