@@ -200,7 +200,7 @@ std::string early_end(RunStatus status) {
         case RunStatus::cancelled:
             return "stopped by an interrupt; the results are what was found until then";
         case RunStatus::result_limit:
-            return "not all of the results are kept, as --max-symmetries asks";
+            return "not all of the results are there, as a limit on them was met";
         case RunStatus::complete:
             break;
     }

@@ -63,7 +63,7 @@ cannot be read; 4 the input is invalid; 5 stopped early, the report is valid and
 
 /// The options as they were typed; empty: not given.
 struct Typed {
-    std::string input, json, html, gltf, png, columns, time_limit, limit, max_symmetries, regions;
+    std::string input, json, html, gltf, png, columns, time_limit, limit, max_symmetries, max_chains, regions;
     std::string points = "representative", labels = "entity", label_tolerance = "0.01", sharp_angle = "30";
     std::string import_memory = "4096", import_time = "300";
     std::string method = "robust", types = "M,I,C2,C,T,Z,S,W";
@@ -277,6 +277,8 @@ void declare(CLI::App& detect, Typed& typed) {
     add("--limit", typed.limit, "N", "Symmetries in the table and the page (default: 20 and 5000; 0: all)");
     add("--max-symmetries", typed.max_symmetries, "N",
         "Symmetries in the report, the best of them (default: all)");
+    add("--max-chains", typed.max_chains, "N",
+        "Method paper: lower the tolerance until there are at most N chains of four points (default: 2000000; 0: never)");
     add("--threads", typed.threads, "N", "Most threads to use (default: 0, all cores)");
     add("--time-limit", typed.time_limit, "S",
         "Stop after so many seconds since the start, with what is found");
@@ -381,6 +383,9 @@ Options checked(const Typed& typed) {
     if (!typed.max_symmetries.empty())
         options.detect.max_symmetries =
             static_cast<std::size_t>(parse_count("--max-symmetries", typed.max_symmetries, kMostListed));
+    if (!typed.max_chains.empty())
+        options.detect.max_chains =
+            static_cast<std::size_t>(parse_count("--max-chains", typed.max_chains, kMostListed));
     options.threads = parse_count("--threads", typed.threads, kMostThreads);
     if (!typed.time_limit.empty()) options.time_limit_s = parse_seconds("--time-limit", typed.time_limit);
     parse_points(typed.points, options);

@@ -50,7 +50,7 @@ public:
           significance_(scene_),
           monitor_(context_) {}
 
-    CycleSearchResult cycles() { return detect_cycles(scene_, SeedChoice::all, monitor_); }
+    CycleSearchResult cycles() { return detect_cycles(scene_, {}, monitor_); }
     std::vector<Symmetry> symmetries(const std::vector<Cycle>& cycles) {
         return detect_symmetries(scene_, cycles, TypeSet::all(), 0, monitor_).symmetries;
     }

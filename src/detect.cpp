@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iomanip>
 #include <map>
 #include <span>
+#include <sstream>
 
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
@@ -26,7 +28,7 @@
 namespace insym {
 namespace {
 
-/// 24 n^2 bytes of distances are 5.4 GB then.
+/// 21 n^2 bytes of distances are 4.7 GB then.
 constexpr std::size_t kMostPoints = 15000;
 
 constexpr int kMostRegions = 10000;
@@ -147,12 +149,12 @@ void measure_largest_first(const Measure& measure, RunMonitor& monitor, DetectRe
 }
 
 /// The cycles of the kinds asked for.
-CycleSearchResult search_cycles(const Scene& scene, const DetectOptions& options, SeedChoice choice,
+CycleSearchResult search_cycles(const Scene& scene, const DetectOptions& options, const CycleSearch& how,
                                 RunMonitor& monitor, std::vector<Diagnostic>& diagnostics) {
     // Pairs need no cycles; a run that asks for pairs alone does not pay for them.
-    if ((options.types & cycle_types()).empty()) return {};
+    if ((options.types & cycle_types()).empty()) return {scene.max_tolerance, 0, 0, 0, {}};
     monitor.begin_stage("cycles", 2 * static_cast<std::size_t>(scene.size()));
-    auto [search, axis, ambiguous] = detect_cycles_in_regions(scene, options.regions, choice, monitor);
+    auto [search, axis, ambiguous] = detect_cycles_in_regions(scene, options.regions, how, monitor);
     if (options.regions.count > 1)
         diagnostics.push_back(
             {"regions", "cycles were searched only inside " + std::to_string(options.regions.count) +
@@ -165,6 +167,23 @@ CycleSearchResult search_cycles(const Scene& scene, const DetectOptions& options
 bool is_searched_as_exact(const PointScene& scene, const DetectOptions& options) {
     if (scene.size() <= kSearchesAll) return false;
     return !options.max_tolerance || *options.max_tolerance <= kExactUpTo * options.resolution * (1 + 1e-9);
+}
+
+/// Up to where was searched, if not up to the tolerance asked for.
+void tell_of_chains(const CycleSearchResult& search, const Scene& scene, const DetectOptions& options,
+                    DetectResult& result) {
+    if (search.max_tolerance == scene.max_tolerance) return;
+    const auto share = [&](double tolerance) {
+        std::ostringstream text;
+        text << std::setprecision(3) << tolerance / scene.diameter;
+        return text.str();
+    };
+    result.status = RunStatus::result_limit;
+    result.diagnostics.push_back({"chains", "within the tolerance of " + share(scene.max_tolerance) +
+                                                " of the diameter there are more than " +
+                                                std::to_string(options.max_chains) +
+                                                " chains of four points; all was searched up to " +
+                                                share(search.max_tolerance) + " of it"});
 }
 
 /// What was not searched as it follows from translations.
@@ -193,11 +212,13 @@ void tell_of_pairs(const std::vector<ExactKind>& kinds, DetectResult& result) {
              "all"});
 }
 
-void run_paper(const Scene& scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
+void run_paper(Scene scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
     const auto start = std::chrono::steady_clock::now();
     const bool exact = is_searched_as_exact(scene, options);
-    CycleSearchResult search = search_cycles(scene, options, exact ? SeedChoice::needed : SeedChoice::all, monitor,
-                                             result.diagnostics);
+    const CycleSearch how{exact ? SeedChoice::needed : SeedChoice::all, options.max_chains};
+    CycleSearchResult search = search_cycles(scene, options, how, monitor, result.diagnostics);
+    tell_of_chains(search, scene, options, result);
+    result.max_tolerance = scene.max_tolerance = search.max_tolerance;
     result.cycles = std::move(search.cycles);
     result.timing.cycles_s = seconds_since(start);
 
@@ -298,7 +319,7 @@ DetectResult detect(const PointSet& points, const DetectOptions& options, const 
             run_robust(scene, options, monitor, result);
         }
     });
-    result.status = monitor.status();
+    if (monitor.status() != RunStatus::complete) result.status = monitor.status();
     keep_best(options.max_symmetries, result);
     result.timing.detect_s = seconds_since(start);
     return result;

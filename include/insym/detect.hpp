@@ -37,6 +37,10 @@ struct DetectOptions {
     /// paper lists of exact sets of more than 100 points only the 100 mirrors, inversions and half-turns of
     /// most pairs, which a diagnostic `exact_pairs` tells.
     std::optional<double> max_tolerance;
+    /// Method paper, searched as one region: with more chains of four points within the tolerance, it is lowered
+    /// until there are no more (not below ten resolutions), `status` says result_limit and a diagnostic `chains` up
+    /// to where was searched; 0: no limit. Chance makes most of them: a million takes about two seconds.
+    std::size_t max_chains = 2'000'000;
     Regions regions;                 ///< method robust takes the default only
     std::size_t max_symmetries = 0;  ///< so many of the best are kept; 0: all
 };

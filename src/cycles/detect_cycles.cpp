@@ -417,12 +417,7 @@ bool Expansion::extend(double& tolerance) {
     return false;
 }
 
-}  // namespace
-
-CycleSearchResult detect_cycles(const Scene& scene, SeedChoice choice, RunMonitor& monitor) {
-    const Rows rows = choice == SeedChoice::all ? Rows() : Rows(scene);
-    const Seeds seeds(scene, rows, monitor);
-    const Fourths fourths(scene, seeds, monitor);
+CycleSearchResult search(const Scene& scene, const Seeds& seeds, const Fourths& fourths, RunMonitor& monitor) {
     FailedSeeds failed(fourths);
     tbb::enumerable_thread_specific<Expansion> expansions(
         [&] { return Expansion(scene, seeds, fourths, failed, monitor); });
@@ -436,8 +431,8 @@ CycleSearchResult detect_cycles(const Scene& scene, SeedChoice choice, RunMonito
     });
 
     CycleSearchResult result;
+    result.max_tolerance = scene.max_tolerance;
     result.superfluous_seeds = seeds.left_out();
-    result.translations = rows.translations();
     std::vector<std::pair<CanonicalCycle, TypeSet>> found;
     for (Expansion& expansion : expansions) {
         result.seeds += expansion.visited();
@@ -455,6 +450,22 @@ CycleSearchResult detect_cycles(const Scene& scene, SeedChoice choice, RunMonito
         result.cycles.push_back({std::move(cycle.points), cycle.closed, types, tolerance});
     }
     return result;
+}
+
+}  // namespace
+
+CycleSearchResult detect_cycles(const Scene& scene, const CycleSearch& how, RunMonitor& monitor) {
+    constexpr double kLower = 0.8, kLeastResolutions = 10;
+    const Rows rows = how.seeds == SeedChoice::all ? Rows() : Rows(scene);
+    for (Scene lowered = scene;; lowered.max_tolerance *= kLower) {
+        const Seeds seeds(lowered, rows, monitor);
+        const bool can_lower = kLower * lowered.max_tolerance >= kLeastResolutions * scene.resolution;
+        const Fourths fourths(lowered, seeds, can_lower ? how.most_chains : 0, monitor);
+        if (fourths.too_many()) continue;
+        CycleSearchResult result = search(lowered, seeds, fourths, monitor);
+        result.translations = rows.translations();
+        return result;
+    }
 }
 
 }  // namespace insym

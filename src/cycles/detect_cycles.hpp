@@ -14,7 +14,15 @@ enum class SeedChoice {
     needed,  ///< not those that follow from others and a translation of many points (class Rows)
 };
 
+struct CycleSearch {
+    SeedChoice seeds = SeedChoice::all;
+    /// With more chains of four points the tolerance is lowered, a fifth at a time and not below ten resolutions,
+    /// until there are no more; 0: never.
+    std::size_t most_chains = 0;
+};
+
 struct CycleSearchResult {
+    double max_tolerance = 0;           ///< up to which was searched
     std::size_t seeds = 0;              ///< near-isosceles triangles that satisfy C1, where the search started
     std::size_t superfluous_seeds = 0;  ///< near-isosceles triangles that were left out
     std::size_t translations = 0;       ///< from which those follow
@@ -24,6 +32,6 @@ struct CycleSearchResult {
 /// All cycles of three points and more that branch out from the chosen seeds. Parallel over the apexes of
 /// the seeds; the same result for any number of threads. Stops early, with the cycles found so far,
 /// when `monitor` says so; advances its stage twice for each point.
-CycleSearchResult detect_cycles(const Scene& scene, SeedChoice choice, RunMonitor& monitor);
+CycleSearchResult detect_cycles(const Scene& scene, const CycleSearch& search, RunMonitor& monitor);
 
 }  // namespace insym

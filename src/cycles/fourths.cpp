@@ -81,12 +81,12 @@ private:
     std::vector<std::uint64_t> bits_;
 };
 
-Fourths::Fourths(const Scene& scene, const Seeds& seeds, RunMonitor& monitor)
+Fourths::Fourths(const Scene& scene, const Seeds& seeds, std::size_t most_chains, RunMonitor& monitor)
     : scene_(scene),
       listed_(seeds.listed() ? &seeds : nullptr),
       stored_(true),
       apexes_(static_cast<std::size_t>(scene.size())) {
-    build_all(monitor);
+    build_all(most_chains, monitor);
     if (stored_) parallel_for(scene.size(), [&](int b) { link_seeds(b); });
     for (Apex& apex : apexes_) {
         apex.first = seeds_;
@@ -94,19 +94,24 @@ Fourths::Fourths(const Scene& scene, const Seeds& seeds, RunMonitor& monitor)
     }
 }
 
-void Fourths::build_all(RunMonitor& monitor) {
+void Fourths::build_all(std::size_t most_chains, RunMonitor& monitor) {
     std::optional<Mates> mates;
     if (listed_ == nullptr) mates.emplace(scene_);
-    std::atomic<std::size_t> stored{0};
+    std::atomic<std::size_t> stored{0}, chains{0};  // chains from either end
+    const auto exceeds = [&] { return most_chains > 0 && chains.load(std::memory_order_relaxed) > 2 * most_chains; };
     parallel_for(scene_.size(), [&](int b) {
-        if (stored.load(std::memory_order_relaxed) > kMostStored) return;
+        if (stored.load(std::memory_order_relaxed) > kMostStored || exceeds()) return;
         if (mates)
             build(b, *mates, monitor);
         else
             build_listed(b, monitor);
-        stored += apexes_[static_cast<std::size_t>(b)].fourths.size();
+        const Apex& apex = apexes_[static_cast<std::size_t>(b)];
+        stored += apex.fourths.size();
+        chains += static_cast<std::size_t>(std::count_if(apex.fourths.begin(), apex.fourths.end(),
+                                                         [](const Candidate& d) { return d.point >= 0; }));
     });
-    if (stored > kMostStored || monitor.should_stop()) {
+    too_many_ = exceeds();
+    if (stored > kMostStored || too_many_ || monitor.should_stop()) {
         stored_ = false;
         apexes_ = {};
     }

@@ -42,9 +42,12 @@ class Fourths {
 public:
     using List = std::vector<Candidate>;
 
-    Fourths(const Scene& scene, const Seeds& seeds, RunMonitor& monitor);
+    /// With more than `most_chains` chains of four it gives up, and says so; 0: it does not.
+    Fourths(const Scene& scene, const Seeds& seeds, std::size_t most_chains, RunMonitor& monitor);
     /// Stores nothing, for few questions.
     explicit Fourths(const Scene& scene) : scene_(scene) {}
+
+    bool too_many() const { return too_many_; }
 
     /// The points D for which (a, b, c, D) satisfies C1, least E_min first, ties by index. The list ends with
     /// nobody, at an infinite E_min. It may lie in `scratch`.
@@ -83,7 +86,7 @@ private:
     };
 
     class Mates;
-    void build_all(RunMonitor& monitor);
+    void build_all(std::size_t most_chains, RunMonitor& monitor);
     void build(int b, const Mates& mates, RunMonitor& monitor);
     void build_listed(int b, RunMonitor& monitor);
     void link_seeds(int b);
@@ -98,6 +101,7 @@ private:
     const Scene& scene_;
     const Seeds* listed_ = nullptr;  // the seeds, where they are not all there are
     bool stored_ = false;
+    bool too_many_ = false;
     std::size_t seeds_ = 0;
     std::vector<Apex> apexes_;
 };

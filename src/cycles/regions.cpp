@@ -48,12 +48,12 @@ PointSet part_of(const PointSet& all, const std::vector<int>& chosen) {
 }
 
 /// The cycles of one slab, with the indices of all points. As `slab` ascends, canonical stays canonical.
-CycleSearchResult search_slab(const Scene& scene, const std::vector<int>& slab, SeedChoice choice,
+CycleSearchResult search_slab(const Scene& scene, const std::vector<int>& slab, const CycleSearch& how,
                               RunMonitor& monitor) {
     const PointSet points = part_of(scene.points, slab);
     const Distances distances(points.positions);
     const PointScene part{points, scene.diameter, scene.resolution, scene.max_tolerance};
-    CycleSearchResult found = detect_cycles({part, distances}, choice, monitor);
+    CycleSearchResult found = detect_cycles({part, distances}, how, monitor);
     for (Cycle& cycle : found.cycles)
         for (int& p : cycle.points) p = slab[static_cast<std::size_t>(p)];
     return found;
@@ -88,18 +88,20 @@ std::vector<std::vector<int>> slabs(const PointScene& scene, int count, int axis
     return result;
 }
 
-RegionSearchResult detect_cycles_in_regions(const Scene& scene, const Regions& regions, SeedChoice choice,
+RegionSearchResult detect_cycles_in_regions(const Scene& scene, const Regions& regions, const CycleSearch& how,
                                             RunMonitor& monitor) {
     RegionSearchResult result;
     result.axis = regions.axis.value_or(longest_axis(scene));
     if (regions.count == 1) {
-        result.search = detect_cycles(scene, choice, monitor);
+        result.search = detect_cycles(scene, how, monitor);
         return result;
     }
+    const CycleSearch in_slab{how.seeds, 0};
+    result.search.max_tolerance = scene.max_tolerance;
     std::vector<Cycle>& cycles = result.search.cycles;
     for (const std::vector<int>& slab : slabs(scene, regions.count, result.axis)) {
         if (slab.size() < 3) continue;
-        CycleSearchResult found = search_slab(scene, slab, choice, monitor);
+        CycleSearchResult found = search_slab(scene, slab, in_slab, monitor);
         result.search.seeds += found.seeds;
         result.search.superfluous_seeds += found.superfluous_seeds;
         result.search.translations += found.translations;

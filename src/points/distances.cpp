@@ -23,7 +23,7 @@ struct Distances::Coordinates {
 
 Distances::Distances(const std::vector<Point>& positions, const std::vector<char>& sorted)
     : n_(static_cast<int>(positions.size())),
-      steps_(std::max(n_, 16)),
+      steps_(std::max(n_ / 4, 16)),
       // Every distance falls inside the directory, the diameter just so.
       directory_scale_(steps_ / (diameter(positions) * (1 + 1e-9))),
       matrix_(std::make_unique_for_overwrite<double[]>(start(n_, n_))),

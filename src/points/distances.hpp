@@ -10,7 +10,7 @@
 
 namespace insym {
 
-/// Immutable after construction; reading is thread-safe. Memory 24 n^2 bytes, time O(n^2 log n); 8 n^2 and
+/// Immutable after construction; reading is thread-safe. Memory 21 n^2 bytes, time O(n^2 log n); 8 n^2 and
 /// O(n^2) for the points that are not sorted about.
 class Distances {
 public:

@@ -420,7 +420,7 @@ std::string_view early_end(RunStatus status) {
         case RunStatus::cancelled:
             return "Stopped by an interrupt: what was found until then.\n";
         case RunStatus::result_limit:
-            return "Not all of the results are kept: the best of them.\n";
+            return "Not all of the results: a limit on them was met, which the notes tell.\n";
         case RunStatus::complete:
             break;
     }

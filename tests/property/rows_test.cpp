@@ -145,8 +145,8 @@ RC_GTEST_PROP(Rows, cycles_are_some_of_those_from_all_seeds, ()) {
     const Scene scene{{points, length, 1e-6 * length, 1e-5 * length}, distances};
     const RunContext context;
     RunMonitor monitor(context);
-    const CycleSearchResult some = detect_cycles(scene, SeedChoice::needed, monitor);
-    const CycleSearchResult all = detect_cycles(scene, SeedChoice::all, monitor);
+    const CycleSearchResult some = detect_cycles(scene, {SeedChoice::needed, 0}, monitor);
+    const CycleSearchResult all = detect_cycles(scene, {SeedChoice::all, 0}, monitor);
     RC_ASSERT(some.cycles.size() < all.cycles.size());
     RC_ASSERT(some.seeds + some.superfluous_seeds >= all.seeds);
     const auto before = [](const Cycle& a, const Cycle& b) {
