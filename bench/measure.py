@@ -40,16 +40,23 @@ class Run:
 
     @property
     def stopped(self):
-        return self.report["status"] != "complete"
+        return self.report["status"] in ("time_limit", "cancelled")
+
+    @property
+    def limited(self):
+        """Was the tolerance lowered (--max-chains)? Then the share of the diameter up to which was searched."""
+        if not any(d["code"] == "chains" for d in self.report["diagnostics"]):
+            return None
+        return self.report["options"]["max_tolerance"] / self.report["input"]["diameter"]
 
     def bytes_without_timing(self):
         return re.sub(rb'"timing": *\{[^}]*\}', b"", self.raw)
 
 
 def arguments(path, method=None, share=None, kinds=None, points=None, threads=None, regions=None,
-              time_limit=None):
+              max_chains=None, time_limit=None):
     """The arguments of insym detect; what is None is left at its default."""
-    options = {"--method": method, "--max-tolerance": share and repr(share), "--types": kinds, "--threads": threads, "--regions": regions,
+    options = {"--method": method, "--max-tolerance": share and repr(share), "--types": kinds, "--threads": threads, "--regions": regions, "--max-chains": max_chains,
                "--points": None if path.suffix in POINT_FORMATS else points, "--time-limit": time_limit}
     given = [str(word) for item in options.items() if item[1] for word in item]
     return ["detect", str(path), *given, "--quiet"]

@@ -26,7 +26,7 @@ struct ExactPairs {
 /// Of each of the `types` M, I and half-turn the `most` isometries that exchange the most pairs to the
 /// resolution, three at least. Each pair votes for its mirror and its centre; a half-turn is looked for about
 /// the directions that most segments suggest. Where detect_pairs() compares all pairs with all in O(n^3),
-/// this takes O(n^2), and memory linear in the pairs that vote, 1.5 million at most. Parallel; the same
+/// this takes O(n^2), and memory linear in the pairs that vote, 800,000 at most. Parallel; the same
 /// result for any number of threads.
 ExactPairs detect_exact_pairs(const PointScene& scene, TypeSet types, std::size_t most, RunMonitor& monitor);
 

@@ -364,6 +364,28 @@ def test_max_symmetries(box):
         assert few["symmetries"] == whole["symmetries"][:3] and few["group"] == whole["group"]
 
 
+def test_max_chains(box):
+    """Fewer chains by a lower tolerance, and it is said which; oracle: the whole search at that tolerance."""
+    assert_bad_numbers(box, "--max-chains", ["-1", "1.5", "x"])
+    box.points("a.xyz", np.random.default_rng(7).uniform(size=(40, 3)))
+    paper = ("--method", "paper", "--max-tolerance", "0.05")
+    for most in ("0", "1000000"):
+        whole = box.report("a.xyz", *paper, "--max-chains", most, "--quiet")
+        assert whole["status"] == "complete" and not whole["diagnostics"]
+    reports = []
+    for threads in ("1", "2"):
+        done = box.run("detect", "a.xyz", *paper, "--max-chains", "500", "--threads", threads, "--json", "-")
+        assert done.returncode == STOPPED and "more than 500 chains of four points" in done.stderr.decode(), done
+        reports.append(checked_report(done.stdout))
+    few = reports[0]
+    assert few["cycles"] == reports[1]["cycles"] and few["symmetries"] == reports[1]["symmetries"]
+    assert few["status"] == "result_limit" and [d["code"] for d in few["diagnostics"]] == ["chains"]
+    share = few["options"]["max_tolerance"] / few["input"]["diameter"]
+    assert 0.001 < share < 0.05 and any(abs(0.05 * 0.8**k - share) < 1e-12 for k in range(1, 20))
+    again = box.report("a.xyz", "--method", "paper", "--max-tolerance", repr(share), "--max-chains", "0", "--quiet")
+    assert again["cycles"] == few["cycles"] != whole["cycles"] and again["symmetries"] == few["symmetries"]
+
+
 def test_regions(box):
     assert_bad_numbers(box, "--regions", ["0", "-1", "1.5", "x", "10001", "2,q", "2,xy", "2,", ",z", "2,x,y", "2 x"])
     box.points("a.xyz", np.vstack([ring(6), ring(6) + [0, 0, 5]]))
