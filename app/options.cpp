@@ -278,7 +278,8 @@ void declare(CLI::App& detect, Typed& typed) {
     add("--max-symmetries", typed.max_symmetries, "N",
         "Symmetries in the report, the best of them (default: all)");
     add("--max-chains", typed.max_chains, "N",
-        "Method paper: lower the tolerance until there are at most N chains of four points (default: 2000000; 0: never)");
+        "Method paper: lower the tolerance until there are at most N chains of four points (default: "
+        "2000000; 0: never)");
     add("--threads", typed.threads, "N", "Most threads to use (default: 0, all cores)");
     add("--time-limit", typed.time_limit, "S",
         "Stop after so many seconds since the start, with what is found");

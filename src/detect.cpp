@@ -33,12 +33,12 @@ constexpr std::size_t kMostPoints = 15000;
 
 constexpr int kMostRegions = 10000;
 
-/// Up to so many points method paper starts from all seeds and compares all pairs with all, which takes n^3 / 3
-/// steps.
+/// Up to so many points method paper starts from all seeds and compares all pairs with all, which takes n^3 /
+/// 3 steps.
 constexpr int kSearchesAll = 100;
-/// Of larger sets it takes, under `auto` and up to so many resolutions, the seeds that do not follow from others
-/// and a translation, and of pairs, where the set is drawn and not measured, so many exact symmetries of each
-/// kind.
+/// Of larger sets it takes, under `auto` and up to so many resolutions, the seeds that do not follow from
+/// others and a translation, and of pairs, where the set is drawn and not measured, so many exact symmetries
+/// of each kind.
 constexpr double kExactUpTo = 10;
 constexpr std::size_t kMostExactPairs = 100;
 
@@ -190,12 +190,13 @@ void tell_of_chains(const CycleSearchResult& search, const Scene& scene, const D
 void tell_of_rows(const CycleSearchResult& search, DetectResult& result) {
     if (search.superfluous_seeds == 0) return;
     result.diagnostics.push_back(
-        {"rows", std::to_string(search.superfluous_seeds) + " of " +
-                     std::to_string(search.superfluous_seeds + search.seeds) +
-                     " near-isosceles triangles in exact rows follow from others and a translation (" +
-                     std::to_string(search.translations) +
-                     " found), and no cycles were searched from them; a tolerance above ten resolutions has all "
-                     "searched"});
+        {"rows",
+         std::to_string(search.superfluous_seeds) + " of " +
+             std::to_string(search.superfluous_seeds + search.seeds) +
+             " near-isosceles triangles in exact rows follow from others and a translation (" +
+             std::to_string(search.translations) +
+             " found), and no cycles were searched from them; a tolerance above ten resolutions has all "
+             "searched"});
 }
 
 /// What was cut off the mirrors, inversions and half-turns.

@@ -35,12 +35,12 @@ struct DetectOptions {
     double resolution = 1e-6;        ///< share of the diameter, in (0, 1): equal lengths
     /// Share of the diameter, in [resolution, 1]; none: auto. Under auto or up to ten resolutions method
     /// paper lists of exact sets of more than 100 points only the 100 mirrors, inversions and half-turns of
-    /// most pairs, which a diagnostic `exact_pairs` tells, and no cycles that follow from others and a translation
-    /// that makes rows, which a diagnostic `rows` tells.
+    /// most pairs, which a diagnostic `exact_pairs` tells, and no cycles that follow from others and a
+    /// translation that makes rows, which a diagnostic `rows` tells.
     std::optional<double> max_tolerance;
-    /// Method paper, searched as one region: with more chains of four points within the tolerance, it is lowered
-    /// until there are no more (not below ten resolutions), `status` says result_limit and a diagnostic `chains` up
-    /// to where was searched; 0: no limit. A million takes some seconds.
+    /// Method paper, searched as one region: with more chains of four points within the tolerance, it is
+    /// lowered until there are no more (not below ten resolutions), `status` says result_limit and a
+    /// diagnostic `chains` up to where was searched; 0: no limit. A million takes some seconds.
     std::size_t max_chains = 2'000'000;
     Regions regions;                 ///< method robust takes the default only
     std::size_t max_symmetries = 0;  ///< so many of the best are kept; 0: all

@@ -149,8 +149,8 @@ private:
     std::vector<Extremes> extremes_;  // of the sequence at hand, once they are asked for
     bool collects_ = false;           // so many points are asked about it that they are worth it
     std::vector<int> replaced_sequence_;
-    std::size_t left_out_ = 0;      // the place of a point
-    std::vector<Span> rest_;        // the orbits without the distances of that point
+    std::size_t left_out_ = 0;  // the place of a point
+    std::vector<Span> rest_;    // the orbits without the distances of that point
     int replaced_point_ = -1;
     std::vector<int> replaced_by_;  // of each point: what could replace it the last time, or -1
 };

@@ -189,7 +189,8 @@ void Expansion::resolve_seeds(int apex) {
     seeds_.visit(apex, [&](const Seed& seed) {
         const auto [a, c, links, ends, tolerance] = seed;
         const int points[] = {a, apex, c};
-        // An equilateral triangle closes at once; it is met from all three apexes, or of the chosen ones from some.
+        // An equilateral triangle closes at once; it is met from all three apexes, or of the chosen ones from
+        // some.
         Span ring = links;
         ring.include(ends);
         if ((apex < a || seeds_.listed()) && ring.spread() <= scene_.max_tolerance)
@@ -306,8 +307,9 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
 }
 
 /// The end with the better candidate, in a way that does not depend on which end is called left: what is
-/// remembered of a chain holds for its reverse. In a row all are equally good. That it grows next to the lower of
-/// two scattered numbers makes parts of it meet soon: of n points they are n log n parts and not n^2.
+/// remembered of a chain holds for its reverse. In a row all are equally good. That it grows next to the
+/// lower of two scattered numbers makes parts of it meet soon: of n points they are n log n parts and not
+/// n^2.
 End Expansion::better_end(const Candidate& left, const Candidate& right) const {
     if (left.tolerance != right.tolerance) return right.tolerance < left.tolerance ? End::right : End::left;
     const auto scattered = [](int point) { return static_cast<std::uint32_t>(point + 1) * 2654435769U; };
@@ -417,7 +419,8 @@ bool Expansion::extend(double& tolerance) {
     return false;
 }
 
-CycleSearchResult search(const Scene& scene, const Seeds& seeds, const Fourths& fourths, RunMonitor& monitor) {
+CycleSearchResult search(const Scene& scene, const Seeds& seeds, const Fourths& fourths,
+                         RunMonitor& monitor) {
     FailedSeeds failed(fourths);
     tbb::enumerable_thread_specific<Expansion> expansions(
         [&] { return Expansion(scene, seeds, fourths, failed, monitor); });

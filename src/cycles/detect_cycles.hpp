@@ -16,14 +16,14 @@ enum class SeedChoice {
 
 struct CycleSearch {
     SeedChoice seeds = SeedChoice::all;
-    /// With more chains of four points the tolerance is lowered, a fifth at a time and not below ten resolutions,
-    /// until there are no more; 0: never.
+    /// With more chains of four points the tolerance is lowered, a fifth at a time and not below ten
+    /// resolutions, until there are no more; 0: never.
     std::size_t most_chains = 0;
 };
 
 struct CycleSearchResult {
-    double max_tolerance = 0;           ///< up to which was searched
-    std::size_t seeds = 0;              ///< near-isosceles triangles that satisfy C1, where the search started
+    double max_tolerance = 0;  ///< up to which was searched
+    std::size_t seeds = 0;     ///< near-isosceles triangles that satisfy C1, where the search started
     std::size_t superfluous_seeds = 0;  ///< near-isosceles triangles that were left out
     std::size_t translations = 0;       ///< from which those follow
     std::vector<Cycle> cycles;          ///< in canonical form and order

@@ -98,7 +98,9 @@ void Fourths::build_all(std::size_t most_chains, RunMonitor& monitor) {
     std::optional<Mates> mates;
     if (listed_ == nullptr) mates.emplace(scene_);
     std::atomic<std::size_t> stored{0}, chains{0};  // chains from either end
-    const auto exceeds = [&] { return most_chains > 0 && chains.load(std::memory_order_relaxed) > 2 * most_chains; };
+    const auto exceeds = [&] {
+        return most_chains > 0 && chains.load(std::memory_order_relaxed) > 2 * most_chains;
+    };
     parallel_for(scene_.size(), [&](int b) {
         if (stored.load(std::memory_order_relaxed) > kMostStored || exceeds()) return;
         if (mates)

@@ -88,8 +88,8 @@ std::vector<std::vector<int>> slabs(const PointScene& scene, int count, int axis
     return result;
 }
 
-RegionSearchResult detect_cycles_in_regions(const Scene& scene, const Regions& regions, const CycleSearch& how,
-                                            RunMonitor& monitor) {
+RegionSearchResult detect_cycles_in_regions(const Scene& scene, const Regions& regions,
+                                            const CycleSearch& how, RunMonitor& monitor) {
     RegionSearchResult result;
     result.axis = regions.axis.value_or(longest_axis(scene));
     if (regions.count == 1) {

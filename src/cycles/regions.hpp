@@ -21,9 +21,9 @@ std::vector<std::vector<int>> slabs(const PointScene& scene, int count, int axis
 
 /// The cycles that detect_cycles finds in each slab by itself, in canonical form and order, less those that
 /// are ambiguous among all points (C2; C3 is asked of the slab alone). One slab gives what detect_cycles
-/// gives; of more none lowers the tolerance. Cost: the squares of the sizes of the slabs in place of n^2, and a shell of points for each point
-/// of a cycle.
-RegionSearchResult detect_cycles_in_regions(const Scene& scene, const Regions& regions, const CycleSearch& how,
-                                            RunMonitor& monitor);
+/// gives; of more none lowers the tolerance. Cost: the squares of the sizes of the slabs in place of n^2, and
+/// a shell of points for each point of a cycle.
+RegionSearchResult detect_cycles_in_regions(const Scene& scene, const Regions& regions,
+                                            const CycleSearch& how, RunMonitor& monitor);
 
 }  // namespace insym

@@ -19,7 +19,8 @@ constexpr std::size_t kMostAsked = 64;  // of the vectors that most pairs have
 constexpr std::size_t kMostTranslations = 4;
 constexpr int kLeastShare = 16;  // one in so many points lies in the rows of a translation
 
-/// So near to the middle, in |t|, are the copies of a link that stand for all of them: one, or five to start from.
+/// So near to the middle, in |t|, are the copies of a link that stand for all of them: one, or five to start
+/// from.
 constexpr double kOneCopy = 0.5;
 constexpr double kFiveCopies = 1.0;
 
@@ -68,8 +69,8 @@ std::vector<Vector3d> suggested(const Cloud& cloud) {
     };
     // Off the borders of cells, where the coordinates of aligned models lie.
     const Vector3d off = 2 * resolution * Vector3d(0.37, 0.41, 0.43);
-    std::vector<Ranked> cells = full_cells(pairs.size(), 2 * resolution,
-                                           [&](std::size_t k) -> Vector3d { return vector(k) + off; });
+    std::vector<Ranked> cells =
+        full_cells(pairs.size(), 2 * resolution, [&](std::size_t k) -> Vector3d { return vector(k) + off; });
     keep_fullest(cells, kMostAsked);
     std::vector<Vector3d> out;
     for (const Ranked& r : cells) {
@@ -138,7 +139,8 @@ Rows::Rows(const Scene& scene) : points_(&scene.points) {
             const auto place = std::find_if(chosen.begin(), chosen.end(),
                                             [&](const Carried& o) { return o.vector == other.vector; });
             translations_.back().mates.push_back(
-                {point_of(other.vector), place == chosen.end() ? -1 : static_cast<int>(place - chosen.begin())});
+                {point_of(other.vector),
+                 place == chosen.end() ? -1 : static_cast<int>(place - chosen.begin())});
         }
         const auto here = [&](int i) -> Place& {
             return places_[static_cast<std::size_t>(i) * chosen.size() + k];
@@ -191,8 +193,8 @@ bool Rows::repeats(int a, int b, int c) const {
     return false;
 }
 
-/// Can an isometry that takes A to B and B to C take rows along t to rows of the mate, or those to these? Then two
-/// of the points at least lie in rows of both.
+/// Can an isometry that takes A to B and B to C take rows along t to rows of the mate, or those to these?
+/// Then two of the points at least lie in rows of both.
 bool Rows::may_exchange(const Mate& mate, int a, int b, int c) const {
     if (mate.place < 0) return true;
     const auto in_row = [&](int i) { return place(i, static_cast<std::size_t>(mate.place)).row >= 0; };
@@ -209,8 +211,8 @@ bool Rows::advances_alike(const Translation& t, const Mate& mate, int a, int b, 
            alike(along(mate.vector, from, apex), along(t.vector, apex, to));
 }
 
-/// Are the middles of both links on one side of those of the rows, and is the point there that the one nearest
-/// to them has in the place of B?
+/// Are the middles of both links on one side of those of the rows, and is the point there that the one
+/// nearest to them has in the place of B?
 bool Rows::off_middle(const Seen& s) {
     const double first = s.b.height + s.a.height - s.b.middle - s.a.middle;
     const double second = s.b.height + s.c.height - s.b.middle - s.c.middle;

@@ -11,7 +11,8 @@ namespace insym {
 
 /// The exact translations T by t that carry many points, and the rows of three and more that they make. Of a
 /// seed (A, B, C) with all its points in rows along t, as any isometry f that takes A to B and B to C would
-///   - leave t as it is: both links advance along t by the same s. If |s| > |t|, (A + t, B, C - t) is the seed
+///   - leave t as it is: both links advance along t by the same s. If |s| > |t|, (A + t, B, C - t) is the
+///   seed
 ///     of a shorter step, and f = f' T: every second pin, the glide of a mirror and a row;
 ///   - turn it over: what the first link advances, the second goes back. f = T^k f' with the f' whose middle
 ///     is nearest to the middles of the rows;
@@ -33,8 +34,9 @@ public:
     /// Does (A, B, C) follow from another seed and a translation? So does (C, B, A), then.
     bool superfluous(int a, int b, int c) const;
 
-    /// Is (A, B, C) far from the middle of a row that has both A and C? A longer chain from the copy of the seed
-    /// there comes to the same cycle, or from that beside it, as the chain meets its row in steps of t or 2 t.
+    /// Is (A, B, C) far from the middle of a row that has both A and C? A longer chain from the copy of the
+    /// seed there comes to the same cycle, or from that beside it, as the chain meets its row in steps of t
+    /// or 2 t.
     bool repeats(int a, int b, int c) const;
 
 private:

@@ -21,11 +21,11 @@ struct Seed {
     double tolerance;  ///< E_min
 };
 
-/// All seeds but those that rows make superfluous. Where there are rows the others are few, and listed; else they
-/// are found anew whenever they are asked for. Immutable after construction.
+/// All seeds but those that rows make superfluous. Where there are rows the others are few, and listed; else
+/// they are found anew whenever they are asked for. Immutable after construction.
 ///
-/// Cost: a and c are at nearly the same distance from their apex, so each looks only at the few that follow it
-/// in the list by distance. Memory: what is listed.
+/// Cost: a and c are at nearly the same distance from their apex, so each looks only at the few that follow
+/// it in the list by distance. Memory: what is listed.
 class Seeds {
 public:
     Seeds(const Scene& scene, const Rows& rows, RunMonitor& monitor);
@@ -43,7 +43,8 @@ public:
         if (listed()) {
             for (const Seed& seed : of(apex)) visit(seed);
         } else {
-            find(apex, [](int, int) { return true; }, visit);
+            find(
+                apex, [](int, int) { return true; }, visit);
         }
     }
 

@@ -60,8 +60,8 @@ private:
     double directory_scale_ = 0;
     // Not initialised: the threads that fill them touch their pages first.
     std::unique_ptr<double[]> matrix_;
-    std::vector<int> place_;             // of each sorted point in what follows
-    std::unique_ptr<double[]> sorted_;   // the distances in the order of order_
+    std::vector<int> place_;            // of each sorted point in what follows
+    std::unique_ptr<double[]> sorted_;  // the distances in the order of order_
     std::unique_ptr<int[]> order_;
     std::unique_ptr<int[]> directory_;  // for each point and step: the first place in its order at or beyond
 };

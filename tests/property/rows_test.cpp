@@ -1,7 +1,7 @@
 // Cycles of sets with rows, where `auto` leaves out what follows from others and a translation.
 //
-// Oracles: the search from all seeds (a tolerance above ten resolutions asks for it), of whose symmetries each must
-// be T^i f T^j, with a listed f and whole i and j; and what was planted.
+// Oracles: the search from all seeds (a tolerance above ten resolutions asks for it), of whose symmetries
+// each must be T^i f T^j, with a listed f and whole i and j; and what was planted.
 #include "insym/detect.hpp"
 
 #include <algorithm>
@@ -47,8 +47,8 @@ bool tells_of_rows(const DetectResult& result) {
                        [](const Diagnostic& d) { return d.code == "rows"; });
 }
 
-/// Copies of a part at 0, 1, 2 ... along x, in turns on one side or mirrored on both: a square that x does not meet
-/// at a right angle, and odd points.
+/// Copies of a part at 0, 1, 2 ... along x, in turns on one side or mirrored on both: a square that x does
+/// not meet at a right angle, and odd points.
 PointSet row_of_parts(int copies, int odd_points, bool both_sides, std::mt19937_64& random) {
     std::vector<Point> part;
     const double height = uniform(random, 0.4, 0.9), turn = uniform(random, 0.1, 1);
@@ -78,13 +78,15 @@ Isometry inverse(const Isometry& f) {
 
 /// f = T^i g T^j for whole i and j, T the step along x?
 bool is_product(const Isometry& f, const Isometry& g, int copies) {
-    constexpr double kTurn = 1e-5, kShift = 1e-4;  // several resolutions: parts of a turned square can be near a row
+    constexpr double kTurn = 1e-5,
+                     kShift = 1e-4;  // several resolutions: parts of a turned square can be near a row
     for (std::size_t r = 0; r < 3; ++r)
         for (std::size_t c = 0; c < 3; ++c)
             if (std::abs(f.linear[r][c] - g.linear[r][c]) > kTurn) return false;
     for (int j = -copies; j <= copies; ++j) {
         Point rest{};
-        for (std::size_t r = 0; r < 3; ++r) rest[r] = f.translation[r] - g.translation[r] - j * g.linear[r][0];
+        for (std::size_t r = 0; r < 3; ++r)
+            rest[r] = f.translation[r] - g.translation[r] - j * g.linear[r][0];
         const double off = std::hypot(rest[0] - std::round(rest[0]), rest[1], rest[2]);
         if (off <= kShift && std::abs(rest[0]) <= copies + 0.5) return true;
     }
@@ -111,8 +113,8 @@ std::string missing(const DetectResult& complete, const DetectResult& cut, int c
         if (s.tolerance.min <= complete.resolution &&
             std::none_of(known.begin(), known.end(),
                          [&](const Isometry& g) { return is_product(s.isometry, g, copies); }))
-            return std::string(option_letter(s.type)) + " of " + std::to_string(s.cycles.size()) + " cycles, rank " +
-                   std::to_string(s.id) + points_of(complete, s);
+            return std::string(option_letter(s.type)) + " of " + std::to_string(s.cycles.size()) +
+                   " cycles, rank " + std::to_string(s.id) + points_of(complete, s);
     return {};
 }
 
@@ -152,7 +154,8 @@ RC_GTEST_PROP(Rows, cycles_are_some_of_those_from_all_seeds, ()) {
     const auto before = [](const Cycle& a, const Cycle& b) {
         return std::tie(a.points, a.closed) < std::tie(b.points, b.closed);
     };
-    RC_ASSERT(std::includes(all.cycles.begin(), all.cycles.end(), some.cycles.begin(), some.cycles.end(), before));
+    RC_ASSERT(
+        std::includes(all.cycles.begin(), all.cycles.end(), some.cycles.begin(), some.cycles.end(), before));
 }
 
 RC_GTEST_PROP(Rows, pose_and_order_change_nothing, ()) {
@@ -177,9 +180,9 @@ RC_GTEST_PROP(Rows, one_thread_and_two_give_the_same_bits, ()) {
     RC_ASSERT(difference_in_bits(detect(points, paper({}), one), detect(points, paper({}), two)) == "");
 }
 
-// Theorem: a square grid of 11 x 11 points has a turn by a quarter about its middle, of 30 cycles of four; so has a
-// cross of four arms of 26 points. Rows along one side must not hide it, as the turn takes them to those along the
-// other.
+// Theorem: a square grid of 11 x 11 points has a turn by a quarter about its middle, of 30 cycles of four; so
+// has a cross of four arms of 26 points. Rows along one side must not hide it, as the turn takes them to
+// those along the other.
 TEST(Rows, KeepTheQuarterTurnThatExchangesThem) {
     for (const int dimension : {2, 3}) {
         PointSet grid, cross;
