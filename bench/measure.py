@@ -56,9 +56,9 @@ class Run:
 def arguments(path, method=None, share=None, kinds=None, points=None, threads=None, regions=None,
               max_chains=None, time_limit=None):
     """The arguments of insym detect; what is None is left at its default."""
-    options = {"--method": method, "--max-tolerance": share and repr(share), "--types": kinds, "--threads": threads, "--regions": regions, "--max-chains": max_chains,
+    options = {"--method": method, "--max-tolerance": None if share is None else repr(share), "--types": kinds, "--threads": threads, "--regions": regions, "--max-chains": max_chains,
                "--points": None if path.suffix in POINT_FORMATS else points, "--time-limit": time_limit}
-    given = [str(word) for item in options.items() if item[1] for word in item]
+    given = [str(word) for item in options.items() if item[1] is not None for word in item]
     return ["detect", str(path), *given, "--quiet"]
 
 

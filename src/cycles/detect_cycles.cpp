@@ -133,14 +133,9 @@ private:
     ChainMemo memo_;
     ChainMemo rings_;
     Chain chain_;
-    /// A point of a chain that another can replace at this tolerance (C2).
-    struct Replaced {
-        int point = -1;
-        double tolerance = 0;
-    };
-    Replaced replaced_;               // of the chain that was asked last, if C2 was
-    std::vector<Step> path_;          // from the start to chain_
-    std::optional<bool> four_alone_;  // does the chain of four at hand become a cycle?
+    int replaced_at_resolution_ = -1;  // C2: of the chain that was asked last a point, if there is one
+    std::vector<Step> path_;           // from the start to chain_
+    std::optional<bool> four_alone_;   // does the chain of four at hand become a cycle?
     Fourths::List list_;
     Fourths::List fours_;  // the fourth points of a seed
     // Of C3: the chain, what it can take at either end, and with one of these:
@@ -288,18 +283,19 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
     }
     // Back along the path, each chain a window of the last.
     std::span<const int> window = chain_.points();
-    Replaced replaced;
+    int replaced = -1;  // a point of the window that another can replace at the resolution
     for (; path_.size() > first_step; path_.pop_back()) {
         const auto [id, added_at, window_tolerance] = path_.back();
         const int left_out = added_at == End::right ? window.back() : window.front();
         window = added_at == End::right ? window.first(window.size() - 1) : window.subspan(1);
-        if (replaced.point == left_out) replaced = {};
-        if (!found && replaced.point >= 0 && replaced.tolerance == window_tolerance) {
-            // What is valid for a chain is valid for its parts, so the same point can be replaced here.
+        if (replaced == left_out) replaced = -1;
+        if (!found && replaced >= 0 && window_tolerance <= scene_.resolution) {
+            // The resolution, if it is valid for a chain, is for its parts: the same point can be replaced
+            // here.
             if (id != kNone) memo_[id].alone = Answer::no;
         } else if (!found) {
             found = resolve_open(window, window_tolerance, id);
-            replaced = replaced_;
+            replaced = replaced_at_resolution_;
         }
         if (id != kNone) memo_[id].path = answer(found);
     }
@@ -307,13 +303,16 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
 }
 
 /// The end with the better candidate, in a way that does not depend on which end is called left: what is
-/// remembered of a chain holds for its reverse. In a row all are equally good. That it grows next to the
-/// lower of two scattered numbers makes parts of it meet soon: of n points they are n log n parts and not
-/// n^2.
+/// remembered of a chain holds for its reverse. In exact rows all are equally good. That they grow next to
+/// the lower of two scattered numbers makes parts meet soon: of n points they are n log n parts and not n^2.
 End Expansion::better_end(const Candidate& left, const Candidate& right) const {
-    if (left.tolerance != right.tolerance) return right.tolerance < left.tolerance ? End::right : End::left;
+    const int first = chain_.points().front(), last = chain_.points().back();
+    if (left.tolerance != right.tolerance || !seeds_.listed()) {
+        if (left != right) return right < left ? End::right : End::left;
+        return first < last ? End::right : End::left;
+    }
     const auto scattered = [](int point) { return static_cast<std::uint32_t>(point + 1) * 2654435769U; };
-    return scattered(chain_.points().front()) < scattered(chain_.points().back()) ? End::left : End::right;
+    return scattered(first) < scattered(last) ? End::left : End::right;
 }
 
 /// Where both ends are equally good, a chain and its reverse part ways, and both are followed: true if there
@@ -342,7 +341,7 @@ bool Expansion::resolve_open(std::span<const int> chain, double tolerance) {
 /// Does this chain, with E_min `tolerance`, by itself become a cycle? `id`: its number in the memo.
 bool Expansion::resolve_open(std::span<const int> chain, double tolerance, ChainMemo::Id id) {
     passed_.clear();
-    replaced_ = {};
+    replaced_at_resolution_ = -1;
     if (id != kNone) {
         if (const auto known = memo_[id].alone; known != Answer::unknown) return known == Answer::yes;
         passed_.push_back(id);
@@ -350,7 +349,7 @@ bool Expansion::resolve_open(std::span<const int> chain, double tolerance, Chain
         return *four_alone_;
     }
     const bool unambiguous = oracle_.unambiguous(chain, false, tolerance);
-    if (!unambiguous) replaced_ = {oracle_.replaced_point(), tolerance};
+    if (!unambiguous && tolerance <= scene_.resolution) replaced_at_resolution_ = oracle_.replaced_point();
     const bool found = unambiguous && become_cycle(chain, tolerance);
     for (const ChainMemo::Id p : passed_) memo_[p].alone = answer(found);
     if (chain.size() == 4) four_alone_ = found;

@@ -19,10 +19,13 @@ constexpr std::size_t kMostAsked = 64;  // of the vectors that most pairs have
 constexpr std::size_t kMostTranslations = 4;
 constexpr int kLeastShare = 16;  // one in so many points lies in the rows of a translation
 
-/// So near to the middle, in |t|, are the copies of a link that stand for all of them: one, or five to start
-/// from.
-constexpr double kOneCopy = 0.5;
-constexpr double kFiveCopies = 1.0;
+/// A translation is longer than so many resolutions: it leads on, though it may be met two beside its end.
+constexpr double kShortest = 16;
+
+/// So near to the middle, in |t|, are the copies of a link that stand for all of them: one or two, and two or
+/// three to start from.
+constexpr double kNearest = 0.5;
+constexpr double kStarts = 1;
 
 /// What a translation does to the points.
 struct Carried {
@@ -75,7 +78,8 @@ std::vector<Vector3d> suggested(const Cloud& cloud) {
     std::vector<Vector3d> out;
     for (const Ranked& r : cells) {
         const Vector3d v = vector(static_cast<std::size_t>(r.first));
-        if (std::none_of(out.begin(), out.end(),
+        if (v.norm() > kShortest * resolution &&
+            std::none_of(out.begin(), out.end(),
                          [&](const Vector3d& other) { return is_multiple(v, other, resolution); }))
             out.push_back(v);
     }
@@ -113,6 +117,13 @@ std::vector<Carried> best_of(std::vector<Carried> all, const Cloud& cloud) {
     return out;
 }
 
+/// Among the chosen ones, or -1.
+int place_of(const Carried& c, const std::vector<Carried>& chosen) {
+    const auto found = std::find_if(chosen.begin(), chosen.end(),
+                                    [&](const Carried& other) { return other.vector == c.vector; });
+    return found == chosen.end() ? -1 : static_cast<int>(found - chosen.begin());
+}
+
 Point point_of(const Vector3d& v) {
     return {v.x(), v.y(), v.z()};
 }
@@ -132,27 +143,19 @@ Rows::Rows(const Scene& scene) : points_(&scene.points) {
         const Carried& c = chosen[k];
         const double length = c.vector.norm();
         translations_.push_back({point_of(c.vector), length * length, 4 * scene.resolution * length, {}});
-        for (const Carried& other : all) {
-            if (std::abs(other.vector.norm() - length) > 4 * scene.resolution ||
-                is_multiple(other.vector, c.vector, scene.resolution))
-                continue;
-            const auto place = std::find_if(chosen.begin(), chosen.end(),
-                                            [&](const Carried& o) { return o.vector == other.vector; });
-            translations_.back().mates.push_back(
-                {point_of(other.vector),
-                 place == chosen.end() ? -1 : static_cast<int>(place - chosen.begin())});
-        }
-        const auto here = [&](int i) -> Place& {
-            return places_[static_cast<std::size_t>(i) * chosen.size() + k];
-        };
-        for (int i = 0; i < scene.size(); ++i) here(i).height = c.vector.dot(cloud[i]);
-        for (int i = 0; i < scene.size(); ++i) {
-            if (!c.in_row(i) || c.before(i) >= 0) continue;
-            int last = i;
+        for (const Carried& other : all)
+            if (std::abs(other.vector.norm() - length) <= 4 * scene.resolution &&
+                !is_multiple(other.vector, c.vector, scene.resolution))
+                translations_.back().mates.push_back({point_of(other.vector), place_of(other, chosen)});
+        const auto height = [&](int i) { return c.vector.dot(cloud[i]); };
+        for (int first = 0; first < scene.size(); ++first) {
+            if (!c.in_row(first) || c.before(first) >= 0) continue;
+            int last = first;
             while (c.after(last) >= 0) last = c.after(last);
-            const double low = here(i).height, high = here(last).height;
-            for (int j = i; j >= 0; j = c.after(j))
-                here(j) = {here(j).height, (low + high) / 2, low, high, i, c.after(j) >= 0, c.before(j) >= 0};
+            const double low = height(first), high = height(last);
+            for (int i = first; i >= 0; i = c.after(i))
+                places_[static_cast<std::size_t>(i) * chosen.size() + k] = {
+                    height(i), (low + high) / 2, low, high, first, c.after(i) >= 0, c.before(i) >= 0};
         }
     }
 }
@@ -175,7 +178,7 @@ bool Rows::superfluous(int a, int b, int c) const {
         } else if (std::abs(first + second) <= s.t.slack) {
             found = off_middle(s) && !mates(may_as_well);
         } else {
-            found = is_copy(s, kOneCopy) && !mates(exchanged);
+            found = is_copy(s, kNearest) && !mates(exchanged);
         }
         if (found) return true;
     }
@@ -187,7 +190,7 @@ bool Rows::repeats(int a, int b, int c) const {
         const Seen s = seen(k, a, b, c);
         if (s.a.row < 0 || s.a.row != s.c.row || s.b.row < 0) continue;
         if (std::abs(s.c.height - s.a.height) > 2 * s.t.square + s.t.slack) continue;
-        if (std::abs(2 * s.b.height - s.a.height - s.c.height) <= s.t.slack && is_copy(s, kFiveCopies))
+        if (std::abs(2 * s.b.height - s.a.height - s.c.height) <= s.t.slack && is_copy(s, kStarts))
             return true;
     }
     return false;
