@@ -22,7 +22,9 @@ constexpr std::size_t kMostVotingPairs = 800'000;
 constexpr std::size_t kMostOfALevel = 200'000;  // of pairs at one height
 
 /// Half-turns are looked for about so many directions.
-constexpr std::size_t kDirections = 32;
+constexpr std::size_t kDirections = 64;
+/// Half as many of sets with more points, in which each takes long.
+constexpr int kManyPoints = 1000;
 
 /// An isometry and how many pairs suggest it.
 struct Suggestion {
@@ -124,7 +126,8 @@ Suggestions ExactSearch::half_turns_along(const Vector3d& direction) const {
 }
 
 Suggestions ExactSearch::half_turns() const {
-    const std::vector<Vector3d> directions = axis_directions(cloud_, kDirections);
+    const std::size_t most = cloud_.size() > kManyPoints ? kDirections / 2 : kDirections;
+    const std::vector<Vector3d> directions = axis_directions(cloud_, most);
     std::vector<Suggestions> along(directions.size());
     parallel_for(directions.size(), [&](std::size_t d) { along[d] = half_turns_along(directions[d]); });
     Suggestions out;
