@@ -136,14 +136,20 @@ def check(checker_module, options, path, max_tolerance, known):
 
 
 def ties(options):
-    """Rows of equal pins: many extensions tie exactly, and which is taken must not depend on who asked first."""
+    """Rows of equal pins: many extensions tie exactly, and which is taken must not depend on who asked first.
+
+    At a lower tolerance a shortcut that is wrong for rough chains (what replaces a point of a chain does in its parts)
+    did not show.
+    """
+    share = 0.0131
     path = options.shared / "data" / "dsub37.step"
     if not path.exists():
         golden.skip(f"{path} is absent")
-    one, two = (without_timing(golden.detect(options.insym, path, 0.005, "--types", "C,T,Z,S,W", "--threads", threads))
+    one, two = (without_timing(golden.detect(options.insym, path, share, "--types", "C,T,Z,S,W", "--max-chains", "0",
+                                            "--threads", threads))
                 for threads in ("1", "2"))
-    print(f"{path.name} at 0.005: {len(one['cycles'])} cycles with one thread, {len(two['cycles'])} with two")
-    return equal("dsub37.step at 0.005: the report of two threads is that of one", two == one, True)
+    print(f"{path.name} at {share}: {len(one['cycles'])} cycles with one thread, {len(two['cycles'])} with two")
+    return equal(f"dsub37.step at {share}: the report of two threads is that of one", two == one, True)
 
 
 def main():
