@@ -49,6 +49,13 @@ class Run:
             return None
         return self.report["options"]["max_tolerance"] / self.report["input"]["diameter"]
 
+    @property
+    def mark(self):
+        """What a figure must say beside it: that the run is not of all that was asked for."""
+        if self.stopped:
+            return " (stopped)"
+        return "" if self.limited is None else f" (up to {self.limited:.3g})"
+
     def bytes_without_timing(self):
         return re.sub(rb'"timing": *\{[^}]*\}', b"", self.raw)
 

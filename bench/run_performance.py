@@ -89,7 +89,7 @@ def seconds(value):
 
 
 def time_of(runs):
-    return seconds(median(runs, detect_s)) + (" (stopped)" if runs[0].stopped else "")
+    return seconds(median(runs, detect_s)) + runs[0].mark
 
 
 def verdict(value, target):
@@ -119,7 +119,7 @@ FAMILIES = {"assembly": assembly.assembly, "random": random_points, "grid": grid
 
 
 def grow(bench, method, family):
-    """One row for each size until a run meets the time limit: (n, seconds, MiB, patterns found or None, stopped)."""
+    """One row for each size until a run meets the time limit: (n, seconds, MiB, patterns found or None, mark)."""
     rows = []
     for n in QUICK_SIZES if bench.quick else SIZES:
         if method == "paper" and n > MOST_OF_PAPER:
@@ -133,7 +133,7 @@ def grow(bench, method, family):
         while detect_s(runs[0]) < 0.5 and len(runs) < (1 if bench.quick else bench.options.repetitions):
             runs.append(bench.detect(path, **arguments))
         found = assembly.score(runs[0].report, truth) if truth else None
-        rows.append((len(points), median(runs, detect_s), max(r.peak_mib for r in runs), found, runs[0].stopped))
+        rows.append((len(points), median(runs, detect_s), max(r.peak_mib for r in runs), found, runs[0].mark))
         if runs[0].stopped:
             break
     return rows
@@ -141,7 +141,7 @@ def grow(bench, method, family):
 
 def exponent(rows):
     """Of the growth of time between 2,000 and 20,000 points, or as far as the runs go."""
-    inside = [(n, t) for n, t, _, _, stopped in rows if 1900 <= n <= 21000 and not stopped]
+    inside = [(n, t) for n, t, _, _, mark in rows if 1900 <= n <= 21000 and not mark]
     if len(inside) < 2:
         return "-"
     (n, t), (m, u) = inside[0], inside[-1]
@@ -158,8 +158,8 @@ def growth_table(grown):
             if k >= len(grown[family]):
                 cells += ["", ""]
                 continue
-            n, spent, mib, hits, stopped = grown[family][k]
-            cells += [seconds(spent) + (" (stopped)" if stopped else ""), f"{mib:.0f}"]
+            n, spent, mib, hits, mark = grown[family][k]
+            cells += [seconds(spent) + mark, f"{mib:.0f}"]
             name = name or f"{n:,}"
             found = f"{sum(hits)} of {len(hits)}" if hits else found
             target = verdict(spent, TARGETS.get(n)) if family == "assembly" else target
@@ -184,7 +184,6 @@ def growth(bench):
 
 # The paper's setting ----------------------------------------------------------------------------------
 
-#        model             share  kinds        regions  target in s
 # Model, share of the diameter, kinds, slabs, --max-chains, target in seconds.
 PAPER = [("spinner4.stp", 0.05, CYCLES_ONLY, None, None, 0.1),
          ("spinner2.stp", 0.05, CYCLES_ONLY, None, None, 0.1),

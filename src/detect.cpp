@@ -152,7 +152,9 @@ void measure_largest_first(const Measure& measure, RunMonitor& monitor, DetectRe
 CycleSearchResult search_cycles(const Scene& scene, const DetectOptions& options, const CycleSearch& how,
                                 RunMonitor& monitor, std::vector<Diagnostic>& diagnostics) {
     // Pairs need no cycles; a run that asks for pairs alone does not pay for them.
-    if ((options.types & cycle_types()).empty()) return {scene.max_tolerance, 0, 0, 0, {}};
+    CycleSearchResult none;
+    none.max_tolerance = scene.max_tolerance;
+    if ((options.types & cycle_types()).empty()) return none;
     monitor.begin_stage("cycles", 2 * static_cast<std::size_t>(scene.size()));
     auto [search, axis, ambiguous] = detect_cycles_in_regions(scene, options.regions, how, monitor);
     if (options.regions.count > 1)
@@ -182,8 +184,8 @@ void tell_of_chains(const CycleSearchResult& search, const Scene& scene, const D
     result.diagnostics.push_back({"chains", "within the tolerance of " + share(scene.max_tolerance) +
                                                 " of the diameter there are more than " +
                                                 std::to_string(options.max_chains) +
-                                                " chains of four points; all was searched up to " +
-                                                share(search.max_tolerance) + " of it"});
+                                                " chains of four points; what holds up to " +
+                                                share(search.max_tolerance) + " of it was searched"});
 }
 
 /// What was not searched as it follows from translations.

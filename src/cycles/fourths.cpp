@@ -101,19 +101,21 @@ void Fourths::build_all(std::size_t most_chains, RunMonitor& monitor) {
     const auto exceeds = [&] {
         return most_chains > 0 && chains.load(std::memory_order_relaxed) > 2 * most_chains;
     };
+    const auto full = [&] { return stored.load(std::memory_order_relaxed) > kMostStored; };
     parallel_for(scene_.size(), [&](int b) {
-        if (stored.load(std::memory_order_relaxed) > kMostStored || exceeds()) return;
+        if (exceeds() || (most_chains == 0 && full())) return;
         if (mates)
             build(b, *mates, monitor);
         else
             build_listed(b, monitor);
-        const Apex& apex = apexes_[static_cast<std::size_t>(b)];
+        Apex& apex = apexes_[static_cast<std::size_t>(b)];
         stored += apex.fourths.size();
         chains += static_cast<std::size_t>(std::count_if(apex.fourths.begin(), apex.fourths.end(),
                                                          [](const Candidate& d) { return d.point >= 0; }));
+        if (full()) apex = {};  // only counted from here on
     });
     too_many_ = exceeds();
-    if (stored > kMostStored || too_many_ || monitor.should_stop()) {
+    if (full() || too_many_ || monitor.should_stop()) {
         stored_ = false;
         apexes_ = {};
     }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "hypotheses/cells.hpp"
@@ -70,8 +71,7 @@ std::vector<Vector3d> suggested(const Cloud& cloud) {
     const auto vector = [&](std::size_t k) {
         return ballot_place(SymmetryType::translation, cloud[pairs[k].first], cloud[pairs[k].second], {});
     };
-    // Off the borders of cells, where the coordinates of aligned models lie.
-    const Vector3d off = 2 * resolution * Vector3d(0.37, 0.41, 0.43);
+    const Vector3d off = off_borders(2 * resolution);
     std::vector<Ranked> cells =
         full_cells(pairs.size(), 2 * resolution, [&](std::size_t k) -> Vector3d { return vector(k) + off; });
     keep_fullest(cells, kMostAsked);

@@ -1,7 +1,6 @@
 // Rows of points that a translation makes, and the seeds that they make superfluous.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -11,9 +10,8 @@ namespace insym {
 
 /// The exact translations T by t that carry many points, and the rows of three and more that they make. Of a
 /// seed (A, B, C) with all its points in rows along t, as any isometry f that takes A to B and B to C would
-///   - leave t as it is: both links advance along t by the same s. If |s| > |t|, (A + t, B, C - t) is the
-///   seed
-///     of a shorter step, and f = f' T: every second pin, the glide of a mirror and a row;
+///   - leave t as it is: both links advance along t by the same s. If |s| > |t|, (A + t, B, C - t) has a
+///     shorter step, and f = f' T: every second pin, the glide of a mirror and a row;
 ///   - turn it over: what the first link advances, the second goes back. f = T^k f' with the f' whose middle
 ///     is nearest to the middles of the rows;
 ///   - or, unless a translation as long makes rows there, carry no row along t: f is a copy T^k f' T^-k, and

@@ -37,7 +37,7 @@ public:
     bool superfluous(int a, int b, int c) const { return listed() && rows_.superfluous(a, b, c); }
     bool repeats(int a, int b, int c) const { return listed() && rows_.repeats(a, b, c); }
 
-    /// Calls visit(seed) for every seed about `apex`; stops when the run should.
+    /// Calls visit(seed) for every seed about `apex`; stops, unless they are listed, when the run should.
     template <class Visit>
     void visit(int apex, Visit visit) const {
         if (listed()) {
@@ -67,8 +67,8 @@ void Seeds::find(int apex, Ask ask, Visit visit) const {
     const auto d = scene_.distances.row(apex);
     const auto others = scene_.distances.nearest_first(apex);
     for (std::size_t i = 0; i < others.size(); ++i) {
-        if (scene_.label(others[i]) != scene_.label(apex)) continue;
         if (i % kAskedOnce == 0 && monitor_.should_stop()) return;
+        if (scene_.label(others[i]) != scene_.label(apex)) continue;
         const double near = d[static_cast<std::size_t>(others[i])];
         const auto to_first = scene_.distances.row(others[i]);
         for (std::size_t j = i + 1; j < others.size(); ++j) {

@@ -38,6 +38,11 @@ inline Eigen::Vector3d ballot_place(SymmetryType type, const Eigen::Vector3d& a,
     return outside - normal * (2 * normal.dot(outside - middle) / square);
 }
 
+/// Moves places off the borders of cells of this size, where the coordinates of aligned models lie.
+inline Eigen::Vector3d off_borders(double size) {
+    return size * Eigen::Vector3d(0.37, 0.41, 0.43);
+}
+
 /// A cell of the space of isometries, and the side of each axis on which the next one is nearer.
 class Cell {
 public:

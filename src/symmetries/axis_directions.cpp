@@ -97,8 +97,7 @@ std::vector<Vector3d> axis_directions(const Cloud& cloud, std::size_t most) {
             suggest(vectors_of(cloud, {&all[k], end - k}), kShortest * cloud.radius(), suggested);
         k = end;
     }
-    // Off the borders of cells, where the coordinates of aligned models lie.
-    const Vector3d off = kSameDirection * Vector3d(0.37, 0.41, 0.43);
+    const Vector3d off = off_borders(kSameDirection);
     std::vector<Ranked> cells = full_cells(suggested.size(), kSameDirection,
                                            [&](std::size_t k) -> Vector3d { return suggested[k] + off; });
     keep_fullest(cells, most);

@@ -59,8 +59,6 @@ private:
 
     std::size_t wanted() const { return most_ + most_ / 4; }  // a vote is not a pair yet
     double cell() const { return 2 * scene_.resolution; }
-    /// Off the borders of cells, where the coordinates of aligned models lie.
-    Vector3d off_border() const { return cell() * Vector3d(0.37, 0.41, 0.43); }
     Vector3d middle(const std::pair<int, int>& p) const { return (cloud_[p.first] + cloud_[p.second]) / 2; }
 
     Suggestions by_votes(SymmetryType type) const;
@@ -78,7 +76,7 @@ private:
 
 /// Mirrors and centres: each pair has its own.
 Suggestions ExactSearch::by_votes(SymmetryType type) const {
-    const Vector3d outside = outside_of(cloud_), off = off_border();
+    const Vector3d outside = outside_of(cloud_), off = off_borders(cell());
     std::vector<Ranked> cells = full_cells(pairs_.size(), cell(), [&](std::size_t k) -> Vector3d {
         return ballot_place(type, cloud_[pairs_[k].first], cloud_[pairs_[k].second], outside) + off;
     });
@@ -115,7 +113,7 @@ Suggestions ExactSearch::half_turns_along(const Vector3d& direction) const {
         const Vector3d m = middle(pairs[k]);
         return m - direction * direction.dot(m);
     };
-    const Vector3d off = off_border();
+    const Vector3d off = off_borders(cell());
     std::vector<Ranked> cells =
         full_cells(pairs.size(), cell(), [&](std::size_t k) -> Vector3d { return place(k) + off; });
     Suggestions out{{}, cells.size()};
