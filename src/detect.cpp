@@ -120,32 +120,32 @@ void measure_largest_first(const Measure& measure, RunMonitor& monitor, DetectRe
     // So that a block takes some tenths of a second at most.
     const std::size_t block = std::max(kLeastBlock, kImages / result.points.size());
     std::vector<Symmetry>& all = result.symmetries;
-    std::vector<std::pair<std::size_t, std::size_t>> sizes;  // points moved, and place
-    for (std::size_t k = 0; k < all.size(); ++k) {
-        sizes.emplace_back(0, k);
-        for (const Orbit& o : all[k].cycles) sizes.back().first += o.points.size();
+    std::vector<std::pair<std::size_t, Symmetry*>> largest_first;  // by the points moved, then by place
+    for (Symmetry& s : all) {
+        std::size_t moved = 0;
+        for (const Orbit& o : s.cycles) moved += o.points.size();
+        largest_first.emplace_back(moved, &s);
     }
-    std::sort(sizes.begin(), sizes.end(), [](const auto& a, const auto& b) {
+    std::sort(largest_first.begin(), largest_first.end(), [](const auto& a, const auto& b) {
         return a.first != b.first ? a.first > b.first : a.second < b.second;
     });
-    std::vector<Symmetry> sorted;
-    sorted.reserve(all.size());
-    for (const auto& [size, place] : sizes) sorted.push_back(std::move(all[place]));
-    all.swap(sorted);
+    std::vector<Symmetry*> next;
     std::size_t done = 0;
     while (done < all.size() && (done < kAlways || !monitor.should_stop())) {
         const std::size_t end = std::min(all.size(), done + block);
-        measure.complete_all(std::span(all).subspan(done, end - done));
-        parallel_for(end - done, [&](std::size_t k) {
-            all[done + k].significance = measure.significance_of(all[done + k]);
-        });
-        done = end;
+        next.clear();
+        for (; done < end; ++done) next.push_back(largest_first[done].second);
+        measure.complete_all(next);
+        parallel_for(next.size(),
+                     [&](std::size_t k) { next[k]->significance = measure.significance_of(*next[k]); });
     }
     if (done == all.size()) return;
     result.diagnostics.push_back(
         {"not_measured",
          std::to_string(all.size() - done) + " smaller symmetries were left out when the time was up"});
-    all.resize(done);
+    std::vector<Symmetry> measured;
+    for (std::size_t k = 0; k < done; ++k) measured.push_back(std::move(*largest_first[k].second));
+    all.swap(measured);
 }
 
 /// The cycles of the kinds asked for.

@@ -42,7 +42,7 @@ public:
     }
     void add(const Candidate& next, End end) { add(next.point, end, next.next); }
 
-    static constexpr int kLongestSaved = 8;
+    static constexpr int kLongestSaved = 4;
     /// A chain of at most kLongestSaved points, to come back to from the longer ones that it grew to.
     struct Saved {
         std::size_t begin = 0;

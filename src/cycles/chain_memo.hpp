@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -52,8 +53,10 @@ class ChainMemo {
 public:
     enum class Answer : std::uint8_t { unknown, no, yes };
     struct Known {
-        Answer path : 2 = Answer::unknown;   ///< does the path from this chain on find a cycle?
-        Answer alone : 2 = Answer::unknown;  ///< does this chain by itself become one?
+        /// Does the path from this chain on find a cycle, if ties go to the end of the higher and of the
+        /// lower index?
+        std::array<Answer, 2> path = {Answer::unknown, Answer::unknown};
+        Answer alone = Answer::unknown;  ///< does this chain by itself become one?
     };
     using Id = std::uint32_t;
 
@@ -77,11 +80,11 @@ public:
     }
 
     /// What is known of the path from `chain` on, which need not have been met.
-    Answer path(const Fingerprint& chain) const {
+    Answer path(const Fingerprint& chain, bool prefers_lower) const {
         std::size_t s = chain.low() & (slots_.size() - 1);
         for (; slots_[s].entry != kFree; s = (s + 1) & (slots_.size() - 1))
             if (slots_[s].low == chain.low() && slots_[s].high == chain.high())
-                return entries_[slots_[s].entry].path;
+                return entries_[slots_[s].entry].path[prefers_lower ? 1 : 0];
         return Answer::unknown;
     }
 

@@ -10,6 +10,7 @@
 
 #include "cycles/chain.hpp"
 #include "cycles/chain_memo.hpp"
+#include "cycles/five_table.hpp"
 #include "cycles/seeds.hpp"
 #include "cycles/types.hpp"
 #include "parallel_for.hpp"
@@ -35,43 +36,79 @@ CanonicalCycle canonical(std::span<const int> sequence, bool closed) {
     return {std::move(p), closed};
 }
 
-/// Which seeds have a fourth point from which no cycle was found. Thread-safe.
+/// Which seeds have a fourth point from which no cycle was found; by their apex and where their fourth points
+/// are stored. Thread-safe.
 class FailedSeeds {
 public:
-    explicit FailedSeeds(const Fourths& fourths) : fourths_(fourths), failed_(fourths.seeds()) {}
+    FailedSeeds(const Fourths& fourths, int apexes) {
+        if (!fourths.stored()) return;
+        for (int b = 0; b < apexes; ++b) failed_.emplace_back(fourths.stored_about(b));
+    }
 
-    void add(int a, int b, int c) {
-        if (const auto s = fourths_.seed(a, b, c); s >= 0)
-            failed_[static_cast<std::size_t>(s)].store(true, std::memory_order_relaxed);
+    void add(int apex, SeedLink list) {
+        if (list != kUnknownLink) of(apex)[list].store(true, std::memory_order_relaxed);
     }
     /// Also true if the seed has no fourth point, or if that is not known.
-    bool contains(int a, int b, int c) const {
-        const auto s = fourths_.seed(a, b, c);
-        return s < 0 || failed_[static_cast<std::size_t>(s)].load(std::memory_order_relaxed);
+    bool contains(int apex, SeedLink list) const {
+        return list == kUnknownLink || list == Fourths::kEmpty ||
+               of(apex)[list].load(std::memory_order_relaxed);
     }
 
 private:
-    const Fourths& fourths_;
-    std::vector<std::atomic<bool>> failed_;
+    using Flags = std::vector<std::atomic<bool>>;
+    Flags& of(int apex) { return failed_[static_cast<std::size_t>(apex)]; }
+    const Flags& of(int apex) const { return failed_[static_cast<std::size_t>(apex)]; }
+
+    std::vector<Flags> failed_;
+};
+
+/// What is known of the chains of five that branch from a chain of four at one of its ends.
+struct Branches {
+    double best = std::numeric_limits<double>::infinity();  ///< least E_min
+    bool failed = false;                                    ///< did one find no cycle?
+};
+
+/// Those of each chain of four (a, b, c, d) beyond a, by where d is among the fourth points of b. Those
+/// beyond d are about c, where a is a fourth point of (d, c, b). Each thread writes what belongs to the
+/// apexes that are its own.
+class FourBranches {
+public:
+    FourBranches(const Fourths& fourths, int apexes) {
+        if (!fourths.stored()) return;
+        for (int b = 0; b < apexes; ++b) branches_.emplace_back(fourths.stored_about(b));
+    }
+
+    Branches& of(int apex, std::size_t fourth) { return branches_[static_cast<std::size_t>(apex)][fourth]; }
+
+private:
+    std::vector<std::vector<Branches>> branches_;
 };
 
 /// The expansion of section 4. What it finds depends on the seed alone, never on what was asked
 /// before: the memo only saves time. One for each thread.
 class Expansion {
 public:
-    Expansion(const Scene& scene, const Seeds& seeds, const Fourths& fourths, FailedSeeds& failed,
-              RunMonitor& monitor)
+    Expansion(const Scene& scene, const Seeds& seeds, const Fourths& fourths, FourBranches& branches,
+              FailedSeeds& failed, RunMonitor& monitor)
         : scene_(scene),
           seeds_(seeds),
           fourths_(fourths),
+          branches_(branches),
           failed_(failed),
           monitor_(monitor),
           oracle_(scene, fourths),
           type_oracle_(scene),
+          table_(scene),
           chain_(scene),
           extended_(scene) {}
 
-    /// Every chain of four whose second point is `apex`, met once: from its end with the smaller index.
+    /// Every chain of five whose middle is `apex` and that a chain of four branches to. In 3D, and where the
+    /// fourth points are stored.
+    void follow_fives(int apex);
+    /// After that, every chain of four whose second point is `apex`, met once: from its end with the smaller
+    /// index.
+    void resolve_fours(int apex);
+    /// The same of both where the chains of five are not known.
     void expand_fours(int apex);
     /// The seeds about `apex` that close or from which the chains of four find nothing; after all of those.
     void resolve_seeds(int apex);
@@ -84,11 +121,17 @@ private:
     bool may_be_on_line(const Seed& seed) const;
     bool expand_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links);
     using Ends = std::pair<Candidate, Candidate>;  // the best candidates at the left and at the right end
-    bool follow_path(double tolerance, std::optional<Ends> ends = {});
+    void follow_five(const FiveTable::Start& start, const std::array<int, 3>& seed, Branches& row,
+                     Branches& column);
+    bool replaces(const Candidate& other, std::span<const int, 4> four, std::size_t at, double eps);
+    bool resolve_four(std::span<const int> four, double tolerance, const Branches& left,
+                      const Branches& right);
+    bool follow_path(double tolerance, std::optional<Ends> ends = {}, bool met_once = false);
+    bool prefers_lower(int left, int right) const;
+    void remember(std::span<const int> chain, ChainMemo::Id id, bool found, bool depends);
     bool follow_branch(const Candidate& next, End end);
     Ends best_ends(double least, double limit);
     End better_end(const Candidate& left, const Candidate& right) const;
-    bool follow_both(const Candidate& left, const Candidate& right);
     bool resolve_open(std::span<const int> chain, double tolerance);
     bool resolve_open(std::span<const int> chain, double tolerance, ChainMemo::Id id);
     bool become_cycle(std::span<const int> chain, double tolerance);
@@ -96,11 +139,12 @@ private:
     bool keep(std::span<const int> sequence, bool closed, double tolerance);
     bool extend(double& tolerance);
 
-    /// Ends tie at every step of an exact row; beyond this length it makes no difference which is first.
-    static constexpr int kLongestBranching = Chain::kLongestSaved;
+    /// Up to this length a tie goes to the end at which the path began to grow. In exact rows ends tie at
+    /// every step, and beyond it makes no difference which is first.
+    static constexpr int kLongestPreferring = 8;
     /// And less where seeds are chosen, in exact rows.
-    static constexpr int kLongestBranchingInRows = 5;
-    int longest_branching() const { return seeds_.listed() ? kLongestBranchingInRows : kLongestBranching; }
+    static constexpr int kLongestPreferringInRows = 5;
+    int longest_preferring() const { return seeds_.listed() ? kLongestPreferringInRows : kLongestPreferring; }
     /// Shorter chains are met once only.
     static constexpr std::size_t kShortestRemembered = 5;
 
@@ -126,16 +170,24 @@ private:
     const Scene& scene_;
     const Seeds& seeds_;
     const Fourths& fourths_;
+    FourBranches& branches_;
     FailedSeeds& failed_;
     RunMonitor& monitor_;
     ChainOracle oracle_;
     TypeOracle type_oracle_;
+    FiveTable table_;
     ChainMemo memo_;
     ChainMemo rings_;
     Chain chain_;
     int replaced_at_resolution_ = -1;  // C2: of the chain that was asked last a point, if there is one
     std::vector<Step> path_;           // from the start to chain_
-    std::optional<bool> four_alone_;   // does the chain of four at hand become a cycle?
+    End preferred_ = End::right;       // where ends tie
+    bool tied_ = false;                // did the last path depend on that?
+    Ends first_ends_;                  // what the start of the last path can take
+    // Does the chain of four, of five at hand become a cycle? What is remembered in another way is not asked
+    // here.
+    std::optional<bool> four_alone_;
+    std::optional<bool> five_alone_;
     Fourths::List list_;
     Fourths::List fours_;  // the fourth points of a seed
     // Of C3: the chain, what it can take at either end, and with one of these:
@@ -152,22 +204,113 @@ private:
     std::vector<std::pair<CanonicalCycle, TypeSet>> found_;
 };
 
+void Expansion::follow_fives(int apex) {
+    fourths_.visit_seeds(apex, [&](int a, int c, SeedLink right) {
+        if (a > c) return;
+        const SeedLink left = fourths_.link(c, apex, a);
+        if (left == Fourths::kEmpty) return;
+        table_.fill(
+            {a, apex, c}, fourths_.of(apex, left), fourths_.of(apex, right),
+            [&](int before) { return is_start(c, apex, a, before); },
+            [&](int after) { return is_start(a, apex, c, after); });
+        for (std::size_t i = 0; i < table_.rows(); ++i)
+            branches_.of(apex, left + i).best = table_.row(i).best;
+        for (std::size_t j = 0; j < table_.columns(); ++j)
+            branches_.of(apex, right + j).best = table_.column(j).best;
+        for (const FiveTable::Start& start : table_.starts())
+            follow_five(start, {a, apex, c}, branches_.of(apex, left + start.row),
+                        branches_.of(apex, right + start.column));
+    });
+}
+
+/// As a branch of its row it grows to the right first, of its column to the left; that makes a difference
+/// only where ends tie.
+void Expansion::follow_five(const FiveTable::Start& start, const std::array<int, 3>& seed, Branches& row,
+                            Branches& column) {
+    const Candidate &first = table_.row(start.row).fourth, &last = table_.column(start.column).fourth;
+    const int five[] = {first.point, seed[0], seed[1], seed[2], last.point};
+    five_alone_.reset();
+    if (table_.ambiguous(start)) five_alone_ = false;
+    std::optional<bool> found;  // whichever end is preferred
+    std::optional<Ends> ends;
+    const auto follow = [&](End end, Branches& branches) {
+        if (!found || tied_) {
+            chain_.assign(five, {first.next, last.next});
+            preferred_ = end;
+            found = follow_path(start.tolerance, ends, true);
+            ends = first_ends_;
+        }
+        if (!*found) branches.failed = true;
+    };
+    if (start.of_row) follow(End::right, row);
+    if (start.of_column) follow(End::left, column);
+    five_alone_.reset();
+}
+
+void Expansion::resolve_fours(int apex) {
+    fourths_.visit_seeds(apex, [&](int a, int c, SeedLink list) {
+        const Candidate* const first = fourths_.of(apex, list);
+        std::size_t k = list;
+        for (const Candidate* d = first; d->point >= 0; ++d, ++k) {
+            if (d->point < a || !is_start(a, apex, c, d->point)) continue;
+            const int four[] = {a, apex, c, d->point};
+            const SeedLink backwards = fourths_.link(d->point, c, apex);
+            const Candidate* const back_first = fourths_.of(c, backwards);
+            std::size_t back = backwards;
+            for (const Candidate* p = back_first; p->point != a; ++p) ++back;
+            four_alone_.reset();
+            if (replaces(*first, four, 3, d->tolerance) || replaces(*back_first, four, 0, d->tolerance))
+                four_alone_ = false;
+            if (resolve_four(four, d->tolerance, branches_.of(apex, k), branches_.of(c, back))) continue;
+            failed_.add(apex, list);
+            failed_.add(c, backwards);
+        }
+    });
+}
+
+/// C2: can `other` stand in the place `at` of a chain of four with E_min `eps`?
+bool Expansion::replaces(const Candidate& other, std::span<const int, 4> four, std::size_t at, double eps) {
+    if (other.point == four[at] || other.tolerance > eps) return false;
+    std::array<int, 4> replaced;
+    std::copy(four.begin(), four.end(), replaced.begin());
+    replaced[at] = other.point;
+    return eps < oracle_.interval(replaced, false).max;
+}
+
+/// The path of a chain of four is that of the best of its branches unless it closes; where a branch finds
+/// nothing, the chain itself is asked.
+bool Expansion::resolve_four(std::span<const int> four, double tolerance, const Branches& left,
+                             const Branches& right) {
+    chain_.assign(four);
+    const double best = std::min(left.best, right.best);
+    const bool ends_here = best > scene_.max_tolerance;
+    // As with seeds; `four` is in canonical form.
+    if (ends_here && !four_alone_ && type_oracle_.types(four, false, tolerance).empty()) four_alone_ = false;
+    bool found = !ends_here;
+    const double closed = oracle_.closed_tolerance(chain_);
+    const bool closes = closed <= std::min(best, scene_.max_tolerance);
+    if (closes || ends_here)
+        found = (closes && resolve_closed(four, Fingerprint(four, true), closed)) ||
+                resolve_open(four, tolerance);
+    if (left.failed || right.failed) found = resolve_open(four, tolerance) && found;
+    return found;
+}
+
 void Expansion::expand_fours(int apex) {
     const auto expand = [&](int a, int c) {
         fours_.clear();
         for (const Candidate* d = fourths_.of(a, apex, c, list_); d->point >= 0; ++d)
             if (a < d->point && is_start(a, apex, c, d->point)) fours_.push_back(*d);
         if (fours_.empty()) return;
-        const SeedLink backwards = fourths_.link(c, apex, a);
+        const SeedLink list = fourths_.link(a, apex, c), backwards = fourths_.link(c, apex, a);
         for (const Candidate& d : fours_) {
             const int four[] = {a, apex, c, d.point};
             if (expand_four(four, d.tolerance, {backwards, d.next})) continue;
-            failed_.add(a, apex, c);
-            failed_.add(d.point, c, apex);
+            failed_.add(apex, list);
+            failed_.add(c, fourths_.link(d.point, c, apex));
         }
     };
     seeds_.visit(apex, [&](const Seed& seed) {
-        ++visited_;
         expand(seed.a, seed.c);
         expand(seed.c, seed.a);
     });
@@ -182,6 +325,7 @@ bool Expansion::is_start(int a, int b, int c, int d) const {
 /// seed.
 void Expansion::resolve_seeds(int apex) {
     seeds_.visit(apex, [&](const Seed& seed) {
+        ++visited_;
         const auto [a, c, links, ends, tolerance] = seed;
         const int points[] = {a, apex, c};
         // An equilateral triangle closes at once; it is met from all three apexes, or of the chosen ones from
@@ -190,10 +334,11 @@ void Expansion::resolve_seeds(int apex) {
         ring.include(ends);
         if ((apex < a || seeds_.listed()) && ring.spread() <= scene_.max_tolerance)
             resolve_closed(points, Fingerprint(points, true), std::max(ring.spread(), scene_.resolution));
-        const bool alone = fourths_.none(a, apex, c) && fourths_.none(c, apex, a);
+        const SeedLink right = fourths_.link(a, apex, c), left = fourths_.link(c, apex, a);
+        const bool alone = right == Fourths::kEmpty && left == Fourths::kEmpty;
         // Where nothing can be added it must be on a line: quicker to ask than C2.
         if (alone && !may_be_on_line(seed)) return;
-        if (alone || failed_.contains(a, apex, c) || failed_.contains(c, apex, a))
+        if (alone || failed_.contains(apex, right) || failed_.contains(apex, left))
             resolve_open(points, tolerance);
     });
 }
@@ -220,40 +365,68 @@ bool Expansion::expand_four(std::span<const int> four, double tolerance, std::ar
     // As with seeds; `four` is in canonical form.
     if (best.first.point < 0 && best.second.point < 0 && type_oracle_.types(four, false, tolerance).empty())
         four_alone_ = false;
+    preferred_ = End::right;
     bool found = follow_path(tolerance, best);
+    if (tied_) {
+        chain_.restore(here);
+        preferred_ = End::left;
+        found = follow_path(tolerance, best) && found;
+    }
     if (scene_.dimension() != 3) return found;
     for (const End end : {End::right, End::left})
         for (const Candidate& fifth : end == End::left ? lefts : rights) {
             if (fifth.point < 0) continue;
             chain_.restore(here);
+            preferred_ = end;
             if (!follow_branch(fifth, end) && !resolve_open(four, tolerance)) found = false;
         }
     return found;
 }
 
-/// The path of chain_ with `next` at `end`; chain_ does not grow where that is known.
+/// The path of chain_ with `next` at `end`, which is preferred; chain_ does not grow where that is known.
 bool Expansion::follow_branch(const Candidate& next, End end) {
-    const Answer known = memo_.path(chain_.fingerprint_with(next.point, end));
+    const int other = chain_.from(end == End::left ? End::right : End::left, 0);
+    const Answer known = memo_.path(chain_.fingerprint_with(next.point, end), next.point < other);
     if (known != Answer::unknown) return known == Answer::yes;
     chain_.add(next, end);
     return follow_path(next.tolerance);
 }
 
+/// Is the end that a tie goes to that of the lower index? The same for a chain and its reverse.
+bool Expansion::prefers_lower(int left, int right) const {
+    return preferred_ == End::left ? left < right : right < left;
+}
+
+/// Does the path from `chain` on find a cycle? `depends`: on the preferred end.
+void Expansion::remember(std::span<const int> chain, ChainMemo::Id id, bool found, bool depends) {
+    if (id == kNone) return;
+    const bool lower = prefers_lower(chain.front(), chain.back());
+    memo_[id].path[lower ? 1 : 0] = answer(found);
+    if (!depends) memo_[id].path[lower ? 0 : 1] = answer(found);
+}
+
 /// From chain_ on, with E_min `tolerance` and the best candidates `ends`, if known: adds the point of least
 /// E_min at either end until the chain closes at no greater tolerance or nothing fits; keeps the longest
-/// chain met that is unambiguous and has a type. True if there is one. What follows depends on the chain
-/// alone, so chains met before end it.
-bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
-    const std::size_t first_step = path_.size();
+/// chain met that is unambiguous and has a type. True if there is one. What follows depends on the chain and
+/// the preferred end alone, so chains met before end it. `met_once`: this chain will not be met again.
+bool Expansion::follow_path(double tolerance, std::optional<Ends> ends, bool met_once) {
+    path_.clear();
+    std::size_t tied = 0;  // so many of the first steps depend on the preferred end
     bool found = false;
     while (true) {
-        const ChainMemo::Id id = remembered(chain_);
-        if (const auto known = id != kNone ? memo_[id].path : Answer::unknown; known != Answer::unknown) {
-            found = known == Answer::yes;
-            break;
+        const ChainMemo::Id id = met_once ? kNone : remembered(chain_);
+        met_once = false;
+        if (id != kNone) {
+            const bool lower = prefers_lower(chain_.points().front(), chain_.points().back());
+            const auto known = memo_[id].path[lower ? 1 : 0];
+            if (known != Answer::unknown) {
+                found = known == Answer::yes;
+                if (memo_[id].path[lower ? 0 : 1] != known) tied = path_.size();
+                break;
+            }
         }
         if (monitor_.should_stop()) {
-            path_.resize(first_step);
+            tied_ = false;
             return true;
         }
         const Fingerprint ring = chain_.fingerprint_with(chain_.from(End::left, 0), End::right);
@@ -264,27 +437,28 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
         const auto [left, right] =
             ends ? *ends : best_ends(tolerance, std::min(closed, scene_.max_tolerance));
         ends.reset();
+        if (path_.empty()) first_ends_ = {left, right};
         const double best = std::min(right.tolerance, left.tolerance);
         const bool closes = closed <= std::min(best, scene_.max_tolerance);
-        const bool ends_here = closes || best > scene_.max_tolerance;
-        const bool parts = right.tolerance == left.tolerance && chain_.size() <= longest_branching();
-        if (ends_here || parts) {
-            found = ends_here ? closes && resolve_closed(chain_.points(), ring, closed)
-                              : follow_both(left, right);
-            found = found || resolve_open(chain_.points(), tolerance, id);
-            if (id != kNone) memo_[id].path = answer(found);
+        if (closes || best > scene_.max_tolerance) {
+            found = (closes && resolve_closed(chain_.points(), ring, closed)) ||
+                    resolve_open(chain_.points(), tolerance, id);
+            remember(chain_.points(), id, found, false);
             break;
         }
+        if (left.tolerance == right.tolerance && chain_.size() <= longest_preferring())
+            tied = path_.size() + 1;
         const End to = better_end(left, right);
         path_.push_back({id, to, tolerance});
         const Candidate& next = to == End::right ? right : left;
         chain_.add(next, to);
         tolerance = next.tolerance;
     }
+    tied_ = tied > 0;
     // Back along the path, each chain a window of the last.
     std::span<const int> window = chain_.points();
     int replaced = -1;  // a point of the window that another can replace at the resolution
-    for (; path_.size() > first_step; path_.pop_back()) {
+    for (; !path_.empty(); path_.pop_back()) {
         const auto [id, added_at, window_tolerance] = path_.back();
         const int left_out = added_at == End::right ? window.back() : window.front();
         window = added_at == End::right ? window.first(window.size() - 1) : window.subspan(1);
@@ -297,35 +471,25 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends) {
             found = resolve_open(window, window_tolerance, id);
             replaced = replaced_at_resolution_;
         }
-        if (id != kNone) memo_[id].path = answer(found);
+        remember(window, id, found, path_.size() <= tied);
     }
     return found;
 }
 
-/// The end with the better candidate, in a way that does not depend on which end is called left: what is
-/// remembered of a chain holds for its reverse. In exact rows all are equally good. That they grow next to
-/// the lower of two scattered numbers makes parts meet soon: of n points they are n log n parts and not n^2.
+/// The end with the better candidate. Of equally good ones a short chain takes that at the preferred end, as
+/// the reference does; a long one, in a way that does not depend on which end is called left, that next to
+/// the lower of two scattered numbers where seeds are chosen, in exact rows: so parts meet soon, of n points
+/// n log n parts and not n^2.
 End Expansion::better_end(const Candidate& left, const Candidate& right) const {
     const int first = chain_.points().front(), last = chain_.points().back();
-    if (left.tolerance != right.tolerance || !seeds_.listed()) {
+    if (left.tolerance != right.tolerance) return right < left ? End::right : End::left;
+    if (chain_.size() <= longest_preferring()) return preferred_;
+    if (!seeds_.listed()) {
         if (left != right) return right < left ? End::right : End::left;
         return first < last ? End::right : End::left;
     }
     const auto scattered = [](int point) { return static_cast<std::uint32_t>(point + 1) * 2654435769U; };
     return scattered(first) < scattered(last) ? End::left : End::right;
-}
-
-/// Where both ends are equally good, a chain and its reverse part ways, and both are followed: true if there
-/// is a cycle on both.
-bool Expansion::follow_both(const Candidate& left, const Candidate& right) {
-    memo_.prefetch(chain_.fingerprint_with(right.point, End::right));
-    memo_.prefetch(chain_.fingerprint_with(left.point, End::left));
-    const Chain::Saved here = chain_.saved();
-    const bool found = follow_branch(right, End::right);
-    chain_.restore(here);
-    const bool found_left = follow_branch(left, End::left);
-    chain_.restore(here);
-    return found && found_left;
 }
 
 /// What the second end offers counts only if it is as good as the first.
@@ -347,12 +511,15 @@ bool Expansion::resolve_open(std::span<const int> chain, double tolerance, Chain
         passed_.push_back(id);
     } else if (chain.size() == 4 && four_alone_) {
         return *four_alone_;
+    } else if (chain.size() == 5 && five_alone_) {
+        return *five_alone_;
     }
     const bool unambiguous = oracle_.unambiguous(chain, false, tolerance);
     if (!unambiguous && tolerance <= scene_.resolution) replaced_at_resolution_ = oracle_.replaced_point();
     const bool found = unambiguous && become_cycle(chain, tolerance);
     for (const ChainMemo::Id p : passed_) memo_[p].alone = answer(found);
-    if (chain.size() == 4) four_alone_ = found;
+    if (id == kNone && chain.size() == 4) four_alone_ = found;
+    if (id == kNone && chain.size() == 5) five_alone_ = found;
     return found;
 }
 
@@ -420,13 +587,22 @@ bool Expansion::extend(double& tolerance) {
 
 CycleSearchResult search(const Scene& scene, const Seeds& seeds, const Fourths& fourths,
                          RunMonitor& monitor) {
-    FailedSeeds failed(fourths);
+    FailedSeeds failed(fourths, scene.size());
+    FourBranches branches(fourths, scene.size());
     tbb::enumerable_thread_specific<Expansion> expansions(
-        [&] { return Expansion(scene, seeds, fourths, failed, monitor); });
-    parallel_for(scene.size(), [&](int apex) {
-        expansions.local().expand_fours(apex);
-        monitor.advance();
-    });
+        [&] { return Expansion(scene, seeds, fourths, branches, failed, monitor); });
+    if (fourths.stored() && scene.dimension() == 3) {
+        parallel_for(scene.size(), [&](int apex) {
+            expansions.local().follow_fives(apex);
+            monitor.advance();
+        });
+        parallel_for(scene.size(), [&](int apex) { expansions.local().resolve_fours(apex); });
+    } else {
+        parallel_for(scene.size(), [&](int apex) {
+            expansions.local().expand_fours(apex);
+            monitor.advance();
+        });
+    }
     parallel_for(scene.size(), [&](int apex) {
         expansions.local().resolve_seeds(apex);
         monitor.advance();

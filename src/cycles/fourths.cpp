@@ -88,10 +88,6 @@ Fourths::Fourths(const Scene& scene, const Seeds& seeds, std::size_t most_chains
       apexes_(static_cast<std::size_t>(scene.size())) {
     build_all(most_chains, monitor);
     if (stored_) parallel_for(scene.size(), [&](int b) { link_seeds(b); });
-    for (Apex& apex : apexes_) {
-        apex.first = seeds_;
-        seeds_ += apex.slots.size();
-    }
 }
 
 void Fourths::build_all(std::size_t most_chains, RunMonitor& monitor) {
@@ -124,7 +120,7 @@ void Fourths::build_all(std::size_t most_chains, RunMonitor& monitor) {
 /// Few seeds: each looks for its own.
 void Fourths::build_listed(int b, RunMonitor& monitor) {
     Apex& apex = apexes_[static_cast<std::size_t>(b)];
-    std::vector<Slot> seeds;
+    std::vector<Slot>& seeds = apex.seeds;
     List fourths;
     apex.fourths.push_back(kNobody);
     const auto add = [&](int a, int c) {
@@ -139,12 +135,12 @@ void Fourths::build_listed(int b, RunMonitor& monitor) {
         add(seed.a, seed.c);
         add(seed.c, seed.a);
     }
-    fill_table(apex, seeds);
+    fill_table(apex);
 }
 
 void Fourths::build(int b, const Mates& mates, RunMonitor& monitor) {
     Apex& apex = apexes_[static_cast<std::size_t>(b)];
-    std::vector<Slot> seeds;
+    std::vector<Slot>& seeds = apex.seeds;
     std::vector<Wing> left, right;
     apex.fourths.push_back(kNobody);
     const double reach = reach_of(scene_);
@@ -176,14 +172,14 @@ void Fourths::build(int b, const Mates& mates, RunMonitor& monitor) {
             seeds.push_back({a.point, c, static_cast<SeedLink>(before)});
         }
     }
-    fill_table(apex, seeds);
+    fill_table(apex);
 }
 
-void Fourths::fill_table(Apex& apex, const std::vector<Slot>& seeds) const {
-    if (seeds.empty()) return;
-    apex.slots.resize(std::bit_ceil(2 * seeds.size()));
+void Fourths::fill_table(Apex& apex) {
+    if (apex.seeds.empty()) return;
+    apex.slots.resize(std::bit_ceil(2 * apex.seeds.size()));
     const std::size_t mask = apex.slots.size() - 1;
-    for (const Slot& seed : seeds) {
+    for (const Slot& seed : apex.seeds) {
         std::size_t s = place(seed.a, seed.c, mask);
         while (apex.slots[s].a >= 0) s = (s + 1) & mask;
         apex.slots[s] = seed;
@@ -193,10 +189,9 @@ void Fourths::fill_table(Apex& apex, const std::vector<Slot>& seeds) const {
 /// After all apexes are built: each fourth point d of (a, b, c) learns where those of (b, c, d) are.
 void Fourths::link_seeds(int b) {
     Apex& apex = apexes_[static_cast<std::size_t>(b)];
-    for (const Slot& seed : apex.slots)
-        if (seed.a >= 0)
-            for (Candidate* d = &apex.fourths[seed.first]; d->point >= 0; ++d)
-                d->next = link(b, seed.c, d->point);
+    visit_seeds(b, [&](int, int c, SeedLink first) {
+        for (Candidate* d = &apex.fourths[first]; d->point >= 0; ++d) d->next = link(b, c, d->point);
+    });
 }
 
 const Candidate* Fourths::of(int a, int b, int c, List& scratch) const {
@@ -210,13 +205,6 @@ SeedLink Fourths::link(int a, int b, int c) const {
     const Slot* slot = find(a, b, c);
     if (slot != nullptr) return slot->first;
     return listed_ != nullptr && listed_->superfluous(a, b, c) ? kUnknownLink : kEmpty;
-}
-
-std::ptrdiff_t Fourths::seed(int a, int b, int c) const {
-    if (!stored_) return -1;
-    const Apex& apex = apexes_[static_cast<std::size_t>(b)];
-    const Slot* slot = find(a, b, c);
-    return slot == nullptr ? -1 : static_cast<std::ptrdiff_t>(apex.first) + (slot - apex.slots.data());
 }
 
 const Fourths::Slot* Fourths::find(int a, int b, int c) const {

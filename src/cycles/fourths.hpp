@@ -59,18 +59,19 @@ public:
     /// Where they are stored, if they are.
     SeedLink link(int a, int b, int c) const;
 
-    /// Is it known that there are none?
-    bool none(int a, int b, int c) const { return link(a, b, c) == kEmpty; }
-
-    /// The number of the seed (a, b, c), one way round, in [0, seeds()); -1 if it has no fourth points or if
-    /// nothing is stored.
-    std::ptrdiff_t seed(int a, int b, int c) const;
-    std::size_t seeds() const { return seeds_; }
-
+    bool stored() const { return stored_; }
+    /// Calls visit(a, c, link) for each seed (a, b, c) whose fourth points are stored, in both directions;
+    /// those of one c one after the other, as what is asked about them lies close together.
+    template <class Visit>
+    void visit_seeds(int b, Visit visit) const {
+        for (const Slot& seed : apexes_[static_cast<std::size_t>(b)].seeds) visit(seed.a, seed.c, seed.first);
+    }
+    /// How many items are stored about `b`: links are below that.
+    std::size_t stored_about(int b) const { return apexes_[static_cast<std::size_t>(b)].fourths.size(); }
     static constexpr Candidate kNobody{std::numeric_limits<double>::infinity(), -1};
+    static constexpr SeedLink kEmpty = 0;  ///< an empty list, the first of each apex
 
 private:
-    static constexpr SeedLink kEmpty = 0;                             // an empty list, the first of each apex
     static constexpr std::size_t kMostStored = std::size_t{1} << 25;  // of 16 bytes
 
     /// The seeds (a, b, c) with one b: an open hash table over (a, c).
@@ -80,8 +81,8 @@ private:
         SeedLink first = 0;
     };
     struct Apex {
+        std::vector<Slot> seeds;  // by c
         std::vector<Slot> slots;  // a power of two, or none
-        std::size_t first = 0;    // the number of the first slot
         List fourths;
     };
 
@@ -90,7 +91,7 @@ private:
     void build(int b, const Mates& mates, RunMonitor& monitor);
     void build_listed(int b, RunMonitor& monitor);
     void link_seeds(int b);
-    void fill_table(Apex& apex, const std::vector<Slot>& seeds) const;
+    static void fill_table(Apex& apex);
     const Slot* find(int a, int b, int c) const;
     void make(int a, int b, int c, List& list) const;
     static std::size_t place(int a, int c, std::size_t mask) {
@@ -102,7 +103,6 @@ private:
     const Seeds* listed_ = nullptr;  // the seeds, where they are not all there are
     bool stored_ = false;
     bool too_many_ = false;
-    std::size_t seeds_ = 0;
     std::vector<Apex> apexes_;
 };
 

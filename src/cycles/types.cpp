@@ -1,7 +1,6 @@
 #include "cycles/types.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 
@@ -19,6 +18,7 @@ constexpr std::size_t kLeastRing = 3;
 constexpr std::size_t kLeastZigzag = 4;
 constexpr std::size_t kLeastHelix = 5;
 constexpr std::size_t kLeastAlternatingRing = 4;
+constexpr double kStraight = 1e-9;  // the sine of a turn
 
 /// Slope and value at the middle of the least-squares line through (k, y_k), k = 0, 1, ...
 struct Line {
@@ -133,9 +133,11 @@ bool TypeOracle::four_may_be_flat() const {
 void TypeOracle::find_plane() {
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     for (const Vector3d& p : x_) covariance += p * p.transpose();
-    const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
-    plane_.col(0) = axes.col(2);
-    plane_.col(1) = axes.col(1);
+    // In closed form: an axis that is off by an angle changes distances by its square.
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+    solver.computeDirect(covariance);
+    plane_.col(0) = solver.eigenvectors().col(2);
+    plane_.col(1) = solver.eigenvectors().col(1);
     flat_.resize(x_.size());
     for (std::size_t i = 0; i < x_.size(); ++i) flat_[i] = plane_.transpose() * x_[i];
 }
@@ -155,7 +157,10 @@ void TypeOracle::find_turns() {
     alternate_ = flat_.size() >= 4;
     double last = 0;
     for (std::size_t i = 0; i + 2 < flat_.size(); ++i) {
-        const double turn = cross(flat_[i + 1] - flat_[i], flat_[i + 2] - flat_[i + 1]);
+        const Vector2d link = flat_[i + 1] - flat_[i], next = flat_[i + 2] - flat_[i + 1];
+        double turn = cross(link, next);
+        // Of three points on a line the sign would be that of the rounding.
+        if (std::abs(turn) <= kStraight * link.norm() * next.norm()) turn = 0;
         if (i == 0) first_turn_ = turn;
         one_way_ = one_way_ && (first_turn_ > 0 ? turn > 0 : first_turn_ < 0 && turn < 0);
         if (i > 0) alternate_ = alternate_ && last * turn < 0;
@@ -165,18 +170,18 @@ void TypeOracle::find_turns() {
 
 bool TypeOracle::near_circle(bool closed) {
     const std::size_t c = flat_.size();
-    // The algebraic circle fit: 2 m.p + const = |p|^2.
-    Eigen::MatrixX3d a(c, 3);
-    Eigen::VectorXd squares(c);
-    for (std::size_t i = 0; i < c; ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
-        a.row(row) << 2 * flat_[i].x(), 2 * flat_[i].y(), 1;
-        squares[row] = flat_[i].squaredNorm();
+    // The algebraic circle fit, 2 m.p + const = |p|^2, about the mean and along the axes of the covariance.
+    Vector2d squares = Vector2d::Zero(), cubes = Vector2d::Zero();
+    for (const Vector2d& p : flat_) {
+        squares += p.cwiseAbs2();
+        cubes += p.squaredNorm() * p;
     }
-    const Vector2d m = Vector3d(a.colPivHouseholderQr().solve(squares)).head<2>();
+    if (!(squares.minCoeff() > 0)) return false;
+    const Vector2d m = cubes.cwiseQuotient(2 * squares);
 
     double radius = 0;
-    std::vector<double> angle(c);
+    std::vector<double>& angle = angles_;
+    angle.resize(c);
     for (std::size_t i = 0; i < c; ++i) {
         const Vector2d spoke = flat_[i] - m;
         radius += spoke.norm() / static_cast<double>(c);
@@ -209,7 +214,9 @@ bool TypeOracle::near_zigzag() {
         const Vector2d p = (flat_[i] + flat_[i + 1]) / 2 - mean;
         covariance += p * p.transpose();
     }
-    const Vector2d along = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvectors().col(1);
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+    solver.computeDirect(covariance);
+    const Vector2d along = solver.eigenvectors().col(1);
     const Vector2d across(-along.y(), along.x());
 
     // Along: an even step. Across: offset + (-1)^k amplitude, by least squares.

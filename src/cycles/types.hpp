@@ -41,6 +41,7 @@ private:
     // In the best plane through the points:
     Eigen::Matrix<double, 3, 2> plane_;
     std::vector<Eigen::Vector2d> flat_;
+    std::vector<double> angles_;
     bool one_way_ = false;
     bool alternate_ = false;
     double first_turn_ = 0;

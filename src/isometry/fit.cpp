@@ -70,19 +70,26 @@ Matrix3d reflection(const Vector3d& normal) {
     return Matrix3d::Identity() - 2 * normal * normal.transpose();
 }
 
-/// Links relative to the mean of their starts and the mean of their ends.
-struct Centred {
+/// Of the starts and of the ends of links.
+struct Means {
     Vector3d from = Vector3d::Zero();
     Vector3d to = Vector3d::Zero();
-    std::vector<Link> links;
 
-    explicit Centred(const std::vector<Link>& all) : links(all) {
-        for (const Link& l : all) {
+    explicit Means(const std::vector<Link>& links) {
+        for (const Link& l : links) {
             from += l.from;
             to += l.to;
         }
-        from /= static_cast<double>(all.size());
-        to /= static_cast<double>(all.size());
+        from /= static_cast<double>(links.size());
+        to /= static_cast<double>(links.size());
+    }
+};
+
+/// Links relative to their means.
+struct Centred : Means {
+    std::vector<Link> links;
+
+    explicit Centred(const std::vector<Link>& all) : Means(all), links(all) {
         for (Link& l : links) {
             l.from -= from;
             l.to -= to;
@@ -106,15 +113,9 @@ Matrix3d eigenvectors(const Matrix3d& symmetric, int dimension) {
     return vectors;
 }
 
-RigidMap fit_translation(const Centred& centred) {
-    return {Matrix3d::Identity(), centred.to - centred.from};
-}
-
 /// Minimise 4 sum (n.a)(n.b) over unit n; the shift along the plane is free.
-RigidMap fit_glide(const Centred& centred, int dimension) {
-    const Matrix3d h = centred.sums().outer;
-    const Matrix3d q = reflection(eigenvectors(h + h.transpose(), dimension).col(0));
-    return {q, centred.to - q * centred.from};
+Matrix3d fit_glide(const LinkSums& centred, int dimension) {
+    return reflection(eigenvectors(centred.outer + centred.outer.transpose(), dimension).col(0));
 }
 
 /// M, I and the half-turn from pairs p +- u. With K = sum u u^T - sum (p - mean)(p - mean)^T the sum
@@ -230,21 +231,17 @@ RigidMap map_about(const Isometry& isometry, const Vector3d& middle) {
 
 RigidMap fit_of_type(SymmetryType type, const std::vector<Link>& links, int dimension) {
     if (is_pair_type(type)) return fit_pairs(type, links, dimension);
-    const Centred centred(links);
-    switch (type) {
-        case SymmetryType::translation:
-            return fit_translation(centred);
-        case SymmetryType::glide_reflection:
-            return fit_glide(centred, dimension);
-        case SymmetryType::rotation:
-            return fit_rotation(centred, dimension);
-        default:
-            break;
-    }
-    const RigidFits fits = fit_rigid(centred.sums(), dimension);
-    RigidMap map = type == SymmetryType::rotation_reflection ? fits.improper : fits.proper;
-    map.shift = centred.to - map.linear * centred.from;
-    return map;
+    if (type == SymmetryType::rotation) return fit_rotation(Centred(links), dimension);
+    const Means means(links);
+    LinkSums centred;
+    for (const Link& l : links) centred.add({l.from - means.from, l.to - means.to});
+    const auto linear = [&]() -> Matrix3d {
+        if (type == SymmetryType::translation) return Matrix3d::Identity();
+        if (type == SymmetryType::glide_reflection) return fit_glide(centred, dimension);
+        const RigidFits fits = fit_rigid(centred, dimension);
+        return type == SymmetryType::rotation_reflection ? fits.improper.linear : fits.proper.linear;
+    }();
+    return {linear, means.to - linear * means.from};
 }
 
 }  // namespace insym

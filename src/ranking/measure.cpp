@@ -47,11 +47,15 @@ void Measure::complete(Symmetry& symmetry) const {
     symmetry.order = order_of(symmetry);
 }
 
-void Measure::complete_all(std::span<Symmetry> symmetries) const {
+void Measure::complete_all(std::span<Symmetry* const> symmetries) const {
+    // With so many to a point the field takes less than it spares.
+    constexpr std::size_t kForEachPoint = 16;
+    std::optional<NearField> field;
+    if (symmetries.size() > kForEachPoint * scene_.points.size()) field.emplace(scene_.points.positions);
     std::vector<std::pair<std::uint64_t, Symmetry*>> keys(symmetries.size());
     parallel_for(symmetries.size(), [&](std::size_t k) {
-        fit(symmetries[k]);
-        keys[k] = {fingerprint(symmetries[k].isometry), &symmetries[k]};
+        fit(*symmetries[k]);
+        keys[k] = {fingerprint(symmetries[k]->isometry), symmetries[k]};
     });
     std::sort(keys.begin(), keys.end());
     std::vector<Symmetry*> sorted;
@@ -63,7 +67,7 @@ void Measure::complete_all(std::span<Symmetry> symmetries) const {
     start.push_back(keys.size());
     parallel_for(start.size() - 1, [&](std::size_t k) {
         const std::span<Symmetry* const> alike(sorted.data() + start[k], start[k + 1] - start[k]);
-        cover_alike(alike);
+        cover_alike(alike, field ? &*field : nullptr);
         for (Symmetry* s : alike) s->order = order_of(*s);
     });
 }
@@ -75,7 +79,10 @@ double Measure::significance_of(const Symmetry& symmetry) const {
 }
 
 void Measure::fit(Symmetry& symmetry) const {
+    std::size_t count = 0;
+    for (const Orbit& orbit : symmetry.cycles) count += orbit.points.size();
     std::vector<Link> links;
+    links.reserve(count);
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for_each_link(symmetry, [&](int from, int to) {
         links.push_back({to_vector(scene_.position(from)), to_vector(scene_.position(to))});
@@ -160,14 +167,14 @@ bool Measure::same_cover(const Cover& cover, const Symmetry& symmetry) const {
     return cover.least_reach + slack <= reach && reach <= cover.most_reach - slack;
 }
 
-void Measure::cover_alike(std::span<Symmetry* const> symmetries) const {
+void Measure::cover_alike(std::span<Symmetry* const> symmetries, const NearField* field) const {
     std::optional<Cover> shared;
     for (Symmetry* s : symmetries) {
         if (symmetries.size() > 1 && !(shared && same_cover(*shared, *s)) &&
             reach_of(*s) < near_.largest_reach())
             shared = cover_of(s->isometry, reach_of(*s));
         if (!shared || !same_cover(*shared, *s)) {
-            cover(*s);
+            cover(*s, field);
             continue;
         }
         s->fixed_points = shared->fixed_points;
@@ -175,7 +182,16 @@ void Measure::cover_alike(std::span<Symmetry* const> symmetries) const {
     }
 }
 
-void Measure::cover(Symmetry& symmetry) const {
+bool Measure::any_within(const Point& image, double reach, const NearField* field) const {
+    if (field != nullptr) {
+        const NearField::Bounds nearest = field->nearest(image);
+        if (nearest.high <= reach) return true;
+        if (nearest.low > reach) return false;
+    }
+    return grid_.any_within(image, reach);
+}
+
+void Measure::cover(Symmetry& symmetry, const NearField* field) const {
     const double reach = reach_of(symmetry);
     std::vector<char> linked(scene_.points.size(), 0);
     for_each_link(symmetry, [&](int from, int) { linked[static_cast<std::size_t>(from)] = 1; });
@@ -195,7 +211,7 @@ void Measure::cover(Symmetry& symmetry) const {
         if ((to_vector(image) - to_vector(p)).squaredNorm() <= reach * reach) {
             symmetry.fixed_points.push_back(i);
             ++covered;
-        } else if (linked[static_cast<std::size_t>(i)] != 0 || grid_.any_within(image, reach)) {
+        } else if (linked[static_cast<std::size_t>(i)] != 0 || any_within(image, reach, field)) {
             ++covered;
         }
     }

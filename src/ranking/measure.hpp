@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "points/near_cells.hpp"
+#include "points/near_field.hpp"
 #include "points/point_grid.hpp"
 #include "ranking/significance.hpp"
 #include "scene.hpp"
@@ -23,7 +24,7 @@ public:
     void complete(Symmetry& symmetry) const;
 
     /// The same for many. Those of one isometry, to a rounding, share what it covers. Parallel.
-    void complete_all(std::span<Symmetry> symmetries) const;
+    void complete_all(std::span<Symmetry* const> symmetries) const;
 
     /// How surely it is no chance, by its links and its deviation alone. After complete().
     double significance_of(const Symmetry& symmetry) const;
@@ -39,11 +40,12 @@ private:
     };
 
     void fit(Symmetry& symmetry) const;
-    void cover(Symmetry& symmetry) const;
+    void cover(Symmetry& symmetry, const NearField* field = nullptr) const;
+    bool any_within(const Point& image, double reach, const NearField* field) const;
     double reach_of(const Symmetry& symmetry) const;
     Cover cover_of(const Isometry& isometry, double reach) const;
     bool same_cover(const Cover& cover, const Symmetry& symmetry) const;
-    void cover_alike(std::span<Symmetry* const> symmetries) const;
+    void cover_alike(std::span<Symmetry* const> symmetries, const NearField* field) const;
     std::uint64_t fingerprint(const Isometry& isometry) const;
     std::optional<int> order_of(const Symmetry& symmetry) const;
 

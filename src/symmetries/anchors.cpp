@@ -59,8 +59,8 @@ void Anchors::collect_links(const std::vector<Cycle>& cycles) {
         const std::vector<int>& p = cycles[c].points;
         const auto at = static_cast<std::size_t>(std::find(p.begin(), p.end(), point(place_[c])) - p.begin());
         const int cycle = static_cast<int>(c);
-        links_.push_back({p[(at + 1) % p.size()], cycle, false});
-        links_.push_back({p[(at + p.size() - 1) % p.size()], cycle, true});
+        links_.push_back({p[(at + 1) % p.size()], cycle, false, cycles[c].types});
+        links_.push_back({p[(at + p.size() - 1) % p.size()], cycle, true, cycles[c].types});
     }
     std::sort(links_.begin(), links_.end(), [&](const AnchoredLink& a, const AnchoredLink& b) {
         return std::tuple(place_of(a.cycle), a.to, a.cycle, a.reversed) <

@@ -16,6 +16,7 @@ struct AnchoredLink {
     int to = 0;
     int cycle = 0;
     bool reversed = false;  ///< the link belongs to the cycle read backwards
+    TypeSet types;          ///< of the cycle
 };
 
 /// Every cycle is given one of its points that have a link in either direction, its anchor. The point of most

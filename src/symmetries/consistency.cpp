@@ -168,7 +168,9 @@ public:
     /// Calls found(type, consistency).
     template <class Found>
     void visit_partners(TypeSet types, Found found) {
-        collect_candidates();
+        types = types & p_.cycle.types;
+        if (types.empty()) return;
+        collect_candidates(types);
         std::sort(unions_.begin(), unions_.end(), [](const Union& a, const Union& b) {
             return std::tie(a.other, a.reversed) < std::tie(b.other, b.reversed);
         });
@@ -180,7 +182,7 @@ public:
         for (std::size_t k = 0; k < unions_.size();) {
             std::size_t end = k + 1;
             while (end < unions_.size() && unions_[end].other == unions_[k].other) ++end;
-            const TypeSet common = types & p_.cycle.types & all_.cycle(unions_[k].other).types;
+            const TypeSet common = types & all_.cycle(unions_[k].other).types;
             for (const SymmetryType type : kAllSymmetryTypes) {
                 if (!common.contains(type)) continue;
                 const auto best = std::find_if(unions_.begin() + static_cast<std::ptrdiff_t>(k),
@@ -196,12 +198,13 @@ public:
 
 private:
     /// A partner carries every link of this cycle, and is carried by it, so also the one at its anchor.
-    void collect_candidates() {
+    void collect_candidates(TypeSet types) {
         for (int place = 0; place < all_.anchors.place_of(cycle_); ++place) {
             const int from = all_.anchors.point(place);
             const auto ask = [&](int to, std::span<const AnchoredLink> links) {
                 if (!carries_link(from, to)) return;
-                for (const AnchoredLink& link : links) unions_.push_back({link.cycle, link.reversed});
+                for (const AnchoredLink& link : links)
+                    if (!(types & link.types).empty()) unions_.push_back({link.cycle, link.reversed});
             };
             // Whichever are fewer: the ends of links, or the points as far from the second as the anchor is
             // from the first.

@@ -1,6 +1,8 @@
 #include "symmetries/detect_symmetries.hpp"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <limits>
 
 #include "parallel_for.hpp"
@@ -11,9 +13,9 @@
 namespace insym {
 namespace {
 
-constexpr SymmetryType kCycleTypes[] = {SymmetryType::rotation, SymmetryType::translation,
-                                        SymmetryType::glide_reflection, SymmetryType::rotation_reflection,
-                                        SymmetryType::screw};
+constexpr std::array kCycleTypes = {SymmetryType::rotation, SymmetryType::translation,
+                                    SymmetryType::glide_reflection, SymmetryType::rotation_reflection,
+                                    SymmetryType::screw};
 
 Symmetry from_cycle(SymmetryType type, const Cycle& cycle, bool maximal) {
     Symmetry symmetry;
@@ -40,8 +42,9 @@ Symmetry from_cluster(SymmetryType type, const Cluster& cluster, const std::vect
 }
 
 /// `pairs`: the consistent ones of the type, by their places among all cycles.
-void add_of_type(const std::vector<Cycle>& cycles, SymmetryType type, std::vector<Consistency> pairs,
-                 double resolution, SymmetrySearchResult& result) {
+SymmetrySearchResult of_type(const std::vector<Cycle>& cycles, SymmetryType type,
+                             std::vector<Consistency> pairs, double resolution) {
+    SymmetrySearchResult result;
     std::vector<const Cycle*> members;
     std::vector<int> place(cycles.size(), -1);
     for (std::size_t c = 0; c < cycles.size(); ++c)
@@ -59,10 +62,11 @@ void add_of_type(const std::vector<Cycle>& cycles, SymmetryType type, std::vecto
     for (const Cycle* c : members) tolerance_max.push_back(c->tolerance.max);
     const Clustering clustering =
         complete_components(members.size(), std::move(pairs), tolerance_max, resolution);
-    result.frustrated += clustering.frustrated;
+    result.frustrated = clustering.frustrated;
     for (std::size_t m = 0; m < members.size(); ++m)
         result.symmetries.push_back(from_cycle(type, *members[m], clustering.clustered[m] == 0));
     for (const Cluster& c : clustering.clusters) result.symmetries.push_back(from_cluster(type, c, members));
+    return result;
 }
 
 Symmetry from_pairs(const PairCluster& cluster) {
@@ -101,10 +105,17 @@ SymmetrySearchResult detect_symmetries(const Scene& scene, const std::vector<Cyc
                                        std::size_t most_exact, RunMonitor& monitor) {
     SymmetrySearchResult result;
     ConsistentPairs consistent = consistent_cycles(scene, cycles, types, monitor);
-    for (const SymmetryType type : kCycleTypes)
+    std::array<SymmetrySearchResult, kCycleTypes.size()> parts;
+    parallel_for(parts.size(), [&](std::size_t k) {
+        const SymmetryType type = kCycleTypes[k];
         if (types.contains(type))
-            add_of_type(cycles, type, std::move(consistent[static_cast<std::size_t>(type)]), scene.resolution,
-                        result);
+            parts[k] = of_type(cycles, type, std::move(consistent[static_cast<std::size_t>(type)]),
+                               scene.resolution);
+    });
+    for (SymmetrySearchResult& part : parts) {
+        result.frustrated += part.frustrated;
+        std::move(part.symmetries.begin(), part.symmetries.end(), std::back_inserter(result.symmetries));
+    }
     const std::vector<PairCluster> pairs = clusters_of_pairs(scene, types, most_exact, monitor, result);
     const std::size_t before = result.symmetries.size();
     result.symmetries.resize(before + pairs.size());
