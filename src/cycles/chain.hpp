@@ -107,6 +107,12 @@ public:
     /// Every point that extends `end` of a chain of three and more with C1 true, least E_min first, ties by
     /// index.
     void candidates(const Chain& chain, End end, std::vector<Candidate>& out);
+    /// They are asked for soon.
+    void prefetch_candidates(const Chain& chain) const {
+        for (const End end : {End::left, End::right})
+            if (const SeedLink link = chain.link(end); link != kUnknownLink)
+                fourths_.prefetch(chain.from(end, 1), link);
+    }
     /// The first of them, or kNobody if none is within `limit`. `least`: E_min of the chain.
     Candidate best_candidate(const Chain& chain, End end, double least, double limit);
     /// The first of them on each side of the plane of the three points at `end` of the chain, and in it; in

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_sort.h>
 
 #include "cycles/chain.hpp"
 #include "cycles/chain_memo.hpp"
@@ -84,6 +85,11 @@ private:
     std::vector<std::vector<Branches>> branches_;
 };
 
+/// Are chains of five met in tables, and those of four after them?
+bool in_tables(const Scene& scene, const Fourths& fourths) {
+    return fourths.stored() && scene.dimension() == 3;
+}
+
 /// The expansion of section 4. What it finds depends on the seed alone, never on what was asked
 /// before: the memo only saves time. One for each thread.
 class Expansion {
@@ -115,6 +121,7 @@ public:
 
     std::size_t visited() const { return visited_; }
     std::vector<std::pair<CanonicalCycle, TypeSet>>& found() { return found_; }
+    ToleranceInterval interval(std::span<const int> points, bool closed) { return oracle_.interval(points, closed); }
 
 private:
     bool is_start(int a, int b, int c, int d) const;
@@ -414,6 +421,12 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends, bool met
     std::size_t tied = 0;  // so many of the first steps depend on the preferred end
     bool found = false;
     while (true) {
+        // What is far off in memory is asked for before it is needed.
+        const Fingerprint ring = chain_.fingerprint_with(chain_.from(End::left, 0), End::right);
+        rings_.prefetch(ring);
+        if (!met_once) memo_.prefetch(chain_.fingerprint());
+        if (!ends) oracle_.prefetch_candidates(chain_);
+        const double closed = oracle_.closed_tolerance(chain_);
         const ChainMemo::Id id = met_once ? kNone : remembered(chain_);
         met_once = false;
         if (id != kNone) {
@@ -429,9 +442,6 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends, bool met
             tied_ = false;
             return true;
         }
-        const Fingerprint ring = chain_.fingerprint_with(chain_.from(End::left, 0), End::right);
-        rings_.prefetch(ring);
-        const double closed = oracle_.closed_tolerance(chain_);
         // No longer chain is better than this one.
         if (closed <= tolerance) ends = Ends{ChainOracle::kNobody, ChainOracle::kNobody};
         const auto [left, right] =
@@ -591,7 +601,7 @@ CycleSearchResult search(const Scene& scene, const Seeds& seeds, const Fourths& 
     FourBranches branches(fourths, scene.size());
     tbb::enumerable_thread_specific<Expansion> expansions(
         [&] { return Expansion(scene, seeds, fourths, branches, failed, monitor); });
-    if (fourths.stored() && scene.dimension() == 3) {
+    if (in_tables(scene, fourths)) {
         parallel_for(scene.size(), [&](int apex) {
             expansions.local().follow_fives(apex);
             monitor.advance();
@@ -616,17 +626,17 @@ CycleSearchResult search(const Scene& scene, const Seeds& seeds, const Fourths& 
         result.seeds += expansion.visited();
         std::move(expansion.found().begin(), expansion.found().end(), std::back_inserter(found));
     }
-    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    tbb::parallel_sort(found.begin(), found.end(),
+                       [](const auto& a, const auto& b) { return a.first < b.first; });
     found.erase(std::unique(found.begin(), found.end(),
                             [](const auto& a, const auto& b) { return a.first == b.first; }),
                 found.end());
-
-    ChainOracle oracle(scene, fourths);
-    result.cycles.reserve(found.size());
-    for (auto& [cycle, types] : found) {
-        const ToleranceInterval tolerance = oracle.interval(cycle.points, cycle.closed);
-        result.cycles.push_back({std::move(cycle.points), cycle.closed, types, tolerance});
-    }
+    result.cycles.resize(found.size());
+    parallel_for(found.size(), [&](std::size_t k) {
+        auto& [cycle, types] = found[k];
+        const ToleranceInterval tolerance = expansions.local().interval(cycle.points, cycle.closed);
+        result.cycles[k] = {std::move(cycle.points), cycle.closed, types, tolerance};
+    });
     return result;
 }
 

@@ -175,8 +175,13 @@ void Fourths::build(int b, const Mates& mates, RunMonitor& monitor) {
     fill_table(apex);
 }
 
-void Fourths::fill_table(Apex& apex) {
+void Fourths::fill_table(Apex& apex) const {
     if (apex.seeds.empty()) return;
+    if (scene_.size() <= kMostInSquare) {
+        apex.square.assign(in_square(scene_.size(), 0), kEmpty);
+        for (const Slot& seed : apex.seeds) apex.square[in_square(seed.a, seed.c)] = seed.first;
+        return;
+    }
     apex.slots.resize(std::bit_ceil(2 * apex.seeds.size()));
     const std::size_t mask = apex.slots.size() - 1;
     for (const Slot& seed : apex.seeds) {
@@ -200,20 +205,13 @@ const Candidate* Fourths::of(int a, int b, int c, List& scratch) const {
     return scratch.data();
 }
 
-SeedLink Fourths::link(int a, int b, int c) const {
-    if (!stored_) return kUnknownLink;
-    const Slot* slot = find(a, b, c);
-    if (slot != nullptr) return slot->first;
-    return listed_ != nullptr && listed_->superfluous(a, b, c) ? kUnknownLink : kEmpty;
-}
-
-const Fourths::Slot* Fourths::find(int a, int b, int c) const {
+SeedLink Fourths::find(int a, int b, int c) const {
     const Apex& apex = apexes_[static_cast<std::size_t>(b)];
-    if (apex.slots.empty()) return nullptr;
+    if (apex.slots.empty()) return kEmpty;
     const std::size_t mask = apex.slots.size() - 1;
     for (std::size_t s = place(a, c, mask); apex.slots[s].a >= 0; s = (s + 1) & mask)
-        if (apex.slots[s].a == a && apex.slots[s].c == c) return &apex.slots[s];
-    return nullptr;
+        if (apex.slots[s].a == a && apex.slots[s].c == c) return apex.slots[s].first;
+    return kEmpty;
 }
 
 void Fourths::make(int a, int b, int c, List& list) const {

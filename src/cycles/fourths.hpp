@@ -56,8 +56,18 @@ public:
     const Candidate* of(int b, SeedLink link) const {
         return apexes_[static_cast<std::size_t>(b)].fourths.data() + link;
     }
+    void prefetch(int b, SeedLink link) const {
+#if defined(__GNUC__)
+        __builtin_prefetch(of(b, link));
+#endif
+    }
     /// Where they are stored, if they are.
-    SeedLink link(int a, int b, int c) const;
+    SeedLink link(int a, int b, int c) const {
+        if (!stored_) return kUnknownLink;
+        const Apex& apex = apexes_[static_cast<std::size_t>(b)];
+        const SeedLink known = apex.square.empty() ? find(a, b, c) : apex.square[in_square(a, c)];
+        return known == kEmpty && listed_ != nullptr && listed_->superfluous(a, b, c) ? kUnknownLink : known;
+    }
 
     bool stored() const { return stored_; }
     /// Calls visit(a, c, link) for each seed (a, b, c) whose fourth points are stored, in both directions;
@@ -74,7 +84,10 @@ public:
 private:
     static constexpr std::size_t kMostStored = std::size_t{1} << 25;  // of 16 bytes
 
-    /// The seeds (a, b, c) with one b: an open hash table over (a, c).
+    /// Up to so many points the links of one apex are a square, of larger sets an open hash table over (a, c).
+    static constexpr int kMostInSquare = 160;
+
+    /// A seed (a, b, c) with one b.
     struct Slot {
         int a = -1;  // -1: free
         int c = -1;
@@ -82,6 +95,7 @@ private:
     };
     struct Apex {
         std::vector<Slot> seeds;  // by c
+        std::vector<SeedLink> square;
         std::vector<Slot> slots;  // a power of two, or none
         List fourths;
     };
@@ -91,9 +105,13 @@ private:
     void build(int b, const Mates& mates, RunMonitor& monitor);
     void build_listed(int b, RunMonitor& monitor);
     void link_seeds(int b);
-    static void fill_table(Apex& apex);
-    const Slot* find(int a, int b, int c) const;
+    void fill_table(Apex& apex) const;
+    SeedLink find(int a, int b, int c) const;
     void make(int a, int b, int c, List& list) const;
+    std::size_t in_square(int a, int c) const {
+        return static_cast<std::size_t>(a) * static_cast<std::size_t>(scene_.size()) +
+               static_cast<std::size_t>(c);
+    }
     static std::size_t place(int a, int c, std::size_t mask) {
         const auto key = static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(c);
         return (key * 0x9E3779B97F4A7C15ULL >> 32) & mask;

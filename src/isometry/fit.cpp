@@ -169,15 +169,15 @@ struct StepFreeProblem {
         return sum;
     }
 
-    /// A Gauss-Newton step for a small turn after r; the derivative of the axis by differences.
+    /// A Gauss-Newton step for a small turn w after r, of angle t about u: it moves u by
+    /// (cot(t / 2) (w - u (u.w)) + w x u) / 2, to first order.
     Vector3d direction(const Matrix3d& r) const {
-        constexpr double kStep = 1e-6;
         const auto count = static_cast<double>(centred.links.size());
-        Vector3d slope;
-        for (int k = 0; k < 3; ++k) {
-            const Vector3d w = kStep * Vector3d::Unit(k);
-            slope[k] = (step(turn_by(w) * r) - step(turn_by(-w) * r)) / (2 * kStep);
-        }
+        const Vector3d u = rotation_axis(r);
+        const double sine = Eigen::Quaterniond(r).vec().norm();
+        const double cosine = std::sqrt(std::max(0.0, 1 - sine * sine));
+        if (!(sine > 0)) return Vector3d::Zero();
+        const Vector3d slope = (cosine / sine * (delta - u * u.dot(delta)) + u.cross(delta)) / 2;
         Matrix3d hessian = count * slope * slope.transpose();
         Vector3d gradient = count * slope * step(r);
         for (const Link& l : centred.links) {

@@ -3,9 +3,11 @@
 
 #include "insym/point_set.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace insym {
@@ -37,18 +39,36 @@ public:
     void visit_shell(int i, double low, double high, Visit visit) const {
         const double* d = sorted_.get() + start(place_of(i), n_ - 1);
         const int* point = order_.get() + start(place_of(i), n_ - 1);
-        const double place = low * directory_scale_;
-        if (place >= steps_) return;
-        int k = place > 0 ? directory_[start(place_of(i), steps_) + static_cast<std::size_t>(place)] : 0;
-        while (k < n_ - 1 && d[k] < low) ++k;
-        for (; k < n_ - 1 && d[k] <= high; ++k)
+        for (int k = first_at(i, low); k < n_ - 1 && d[k] <= high; ++k)
             if (!visit(point[k], d[k])) return;
+    }
+
+    /// The places in nearest_first(i) of those points: from the first to before the second.
+    std::pair<int, int> shell(int i, double low, double high) const {
+        const double* d = sorted_.get() + start(place_of(i), n_ - 1);
+        const int first = first_at(i, low);
+        int end = std::max(first, first_in_step(i, high));
+        while (end < n_ - 1 && d[end] <= high) ++end;
+        return {first, end};
     }
 
 private:
     struct Coordinates;
     void fill_row(int i, const Coordinates& of);
     void sort_row(int i);
+    /// The place of the first point in the step of the directory that `distance` is in.
+    int first_in_step(int i, double distance) const {
+        const double step = distance * directory_scale_;
+        if (step >= steps_) return n_ - 1;
+        return step > 0 ? directory_[start(place_of(i), steps_) + static_cast<std::size_t>(step)] : 0;
+    }
+    /// The place of the first point that is not nearer than `low`.
+    int first_at(int i, double low) const {
+        const double* d = sorted_.get() + start(place_of(i), n_ - 1);
+        int k = first_in_step(i, low);
+        while (k < n_ - 1 && d[k] < low) ++k;
+        return k;
+    }
     int place_of(int i) const { return place_[static_cast<std::size_t>(i)]; }
 
     static std::size_t start(int i, int width) {

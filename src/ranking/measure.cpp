@@ -182,36 +182,41 @@ void Measure::cover_alike(std::span<Symmetry* const> symmetries, const NearField
     }
 }
 
-bool Measure::any_within(const Point& image, double reach, const NearField* field) const {
+/// Of which points may the image have a point within the reach? Of most it lies where none is.
+void Measure::find_near(const Isometry& isometry, double reach, const NearField* field,
+                        std::vector<NearField::Near>& out) const {
     if (field != nullptr) {
-        const NearField::Bounds nearest = field->nearest(image);
-        if (nearest.high <= reach) return true;
-        if (nearest.low > reach) return false;
+        field->images_near(isometry, reach, out);
+        return;
     }
-    return grid_.any_within(image, reach);
-}
-
-void Measure::cover(Symmetry& symmetry, const NearField* field) const {
-    const double reach = reach_of(symmetry);
-    std::vector<char> linked(scene_.points.size(), 0);
-    for_each_link(symmetry, [&](int from, int) { linked[static_cast<std::size_t>(from)] = 1; });
-    // Most images lie where no point is; where a link ends there is one.
-    std::vector<int> near;
+    thread_local std::vector<int> near;
     if (reach <= near_.largest_reach()) {
-        near_.images_near(symmetry.isometry, near);
+        near_.images_near(isometry, near);
     } else {
         near.resize(scene_.points.size());
         std::iota(near.begin(), near.end(), 0);
     }
+    out.clear();
+    for (const int i : near) out.push_back({i, false});
+}
+
+void Measure::cover(Symmetry& symmetry, const NearField* field) const {
+    const double reach = reach_of(symmetry);
+    thread_local std::vector<char> linked;
+    thread_local std::vector<NearField::Near> near;
+    linked.assign(scene_.points.size(), 0);
+    // Where a link ends there is one.
+    for_each_link(symmetry, [&](int from, int) { linked[static_cast<std::size_t>(from)] = 1; });
+    find_near(symmetry.isometry, reach, field, near);
     int covered = 0;
     symmetry.fixed_points.clear();
-    for (const int i : near) {
+    for (const auto& [i, surely] : near) {
         const Point& p = scene_.position(i);
         const Point image = symmetry.isometry.apply(p);
         if ((to_vector(image) - to_vector(p)).squaredNorm() <= reach * reach) {
             symmetry.fixed_points.push_back(i);
             ++covered;
-        } else if (linked[static_cast<std::size_t>(i)] != 0 || any_within(image, reach, field)) {
+        } else if (surely || linked[static_cast<std::size_t>(i)] != 0 || grid_.any_within(image, reach)) {
             ++covered;
         }
     }

@@ -41,7 +41,8 @@ private:
 
     void fit(Symmetry& symmetry) const;
     void cover(Symmetry& symmetry, const NearField* field = nullptr) const;
-    bool any_within(const Point& image, double reach, const NearField* field) const;
+    void find_near(const Isometry& isometry, double reach, const NearField* field,
+                   std::vector<NearField::Near>& out) const;
     double reach_of(const Symmetry& symmetry) const;
     Cover cover_of(const Isometry& isometry, double reach) const;
     bool same_cover(const Cover& cover, const Symmetry& symmetry) const;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tbb/parallel_sort.h>
+
 #include "parallel_for.hpp"
 
 namespace insym {
@@ -38,7 +40,7 @@ void rank(std::vector<Symmetry>& symmetries) {
         const Symmetry& s = symmetries[k];
         order[k] = {s.significance, moved_points(s), s.type, std::round(s.isometry.angle_deg * 1e3), k};
     }
-    std::sort(order.begin(), order.end(), [&](const Key& a, const Key& b) {
+    tbb::parallel_sort(order.begin(), order.end(), [&](const Key& a, const Key& b) {
         if (a.significance != b.significance) return a.significance < b.significance;
         if (a.moved != b.moved) return a.moved > b.moved;
         if (a.type != b.type) return a.type < b.type;

@@ -1,8 +1,8 @@
 #include "symmetries/anchors.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <queue>
-#include <tuple>
 
 namespace insym {
 namespace {
@@ -54,18 +54,26 @@ void Anchors::choose(const std::vector<Cycle>& cycles, int points) {
     }
 }
 
+/// In order of anchor and end, and, as they come, of cycle and direction.
 void Anchors::collect_links(const std::vector<Cycle>& cycles) {
+    std::vector<AnchoredLink> links;
+    links.reserve(2 * cycles.size());
     for (std::size_t c = 0; c < cycles.size(); ++c) {
         const std::vector<int>& p = cycles[c].points;
         const auto at = static_cast<std::size_t>(std::find(p.begin(), p.end(), point(place_[c])) - p.begin());
         const int cycle = static_cast<int>(c);
-        links_.push_back({p[(at + 1) % p.size()], cycle, false, cycles[c].types});
-        links_.push_back({p[(at + p.size() - 1) % p.size()], cycle, true, cycles[c].types});
+        links.push_back({p[(at + 1) % p.size()], cycle, false, cycles[c].types});
+        links.push_back({p[(at + p.size() - 1) % p.size()], cycle, true, cycles[c].types});
     }
-    std::sort(links_.begin(), links_.end(), [&](const AnchoredLink& a, const AnchoredLink& b) {
-        return std::tuple(place_of(a.cycle), a.to, a.cycle, a.reversed) <
-               std::tuple(place_of(b.cycle), b.to, b.cycle, b.reversed);
-    });
+    const std::size_t ends = 64 * words_each_;
+    const auto bin = [&](const AnchoredLink& link) {
+        return static_cast<std::size_t>(place_of(link.cycle)) * ends + static_cast<std::size_t>(link.to);
+    };
+    std::vector<std::size_t> next(points_.size() * ends + 1, 0);
+    for (const AnchoredLink& link : links) ++next[bin(link) + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    links_.resize(links.size());
+    for (const AnchoredLink& link : links) links_[next[bin(link)]++] = link;
 }
 
 void Anchors::index_ends() {

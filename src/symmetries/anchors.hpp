@@ -50,6 +50,10 @@ public:
         return links_of(word.ends_before + std::popcount(word.bits & (bit - 1)));
     }
 
+    /// Which of the points from 64 w on are ends of links from the anchor.
+    std::uint64_t end_bits(int place, int w) const { return words_[word_of(place, 64 * w)].bits; }
+    int words() const { return static_cast<int>(words_each_); }
+
 private:
     /// Which of 64 points are ends of links from an anchor.
     struct Word {

@@ -9,6 +9,7 @@
 
 #include "cycles/tolerance_interval.hpp"
 #include "isometry/fit.hpp"
+#include "points/shells.hpp"
 #include "parallel_for.hpp"
 #include "symmetries/anchors.hpp"
 
@@ -100,7 +101,7 @@ private:
 class Strands {
 public:
     Strands(const Scene& points, const std::vector<Cycle>& cycles)
-        : scene(points), anchors(cycles, points.size()), rounding(1e-12 * points.diameter) {
+        : scene(points), anchors(cycles, points.size()), shells(points.distances), rounding(1e-12 * points.diameter) {
         for (const Cycle& c : cycles) points_.insert(points_.end(), c.points.begin(), c.points.end());
         const int* next = points_.data();
         for (const Cycle& c : cycles) {
@@ -112,8 +113,9 @@ public:
         centred_.reserve(scene.points.size());
         for (const Point& p : scene.points.positions) centred_.emplace_back(to_vector(p) - centre);
         sums_.resize(cycles.size());
-        for (std::size_t c = 0; c < cycles.size(); ++c)
+        parallel_for(cycles.size(), [&](std::size_t c) {
             for_each_link({members_[c]}, [&](const auto& from, const auto& to) { sums_[c].add({from, to}); });
+        });
     }
 
     const Member& cycle(int c) const { return members_[static_cast<std::size_t>(c)]; }
@@ -135,6 +137,7 @@ public:
 
     const Scene& scene;
     const Anchors anchors;
+    const Shells shells;
     const double rounding;  // more than all that is computed here can be off by
 
 private:
@@ -206,20 +209,41 @@ private:
                 for (const AnchoredLink& link : links)
                     if (!(types & link.types).empty()) unions_.push_back({link.cycle, link.reversed});
             };
+            if (all_.shells.stored()) {
+                Shells::visit(possible_ends(place, from), [&](int to) { ask(to, all_.anchors.links(place, to)); });
+                continue;
+            }
             // Whichever are fewer: the ends of links, or the points as far from the second as the anchor is
             // from the first.
             if (all_.anchors.ends(place) < kShell + scene_.size() * limit_ / scene_.diameter) {
                 all_.anchors.visit_ends(place, ask);
                 continue;
             }
-            const double d = distance(0, from);
+            // About the end of the link whose start is nearest: a small shell has few points.
+            int nearest = 0;
+            for (int k = 1; k < p_.links(); ++k)
+                if (distance(k, from) < distance(nearest, from)) nearest = k;
+            const double d = distance(nearest, from);
             const double reach = limit_ + all_.rounding;
-            scene_.distances.visit_shell(p_.point(1), d - reach, d + reach, [&](int to, double) {
+            scene_.distances.visit_shell(p_.point(p_.next(nearest)), d - reach, d + reach, [&](int to, double) {
                 const auto links = all_.anchors.links(place, to);
                 if (!links.empty()) ask(to, links);
                 return true;
             });
         }
+    }
+
+    /// Of the links from the anchor `from`: what lies as far from the end of each link of this cycle as the anchor from its start.
+    Shells::Set possible_ends(int place, int from) const {
+        Shells::Set ends{};
+        for (int w = 0; w < all_.anchors.words(); ++w)
+            ends[static_cast<std::size_t>(w)] = all_.anchors.end_bits(place, w);
+        const double reach = limit_ + all_.rounding;
+        for (int k = 0; k < p_.links(); ++k) {
+            const double d = distance(k, from);
+            if (p_.point(k) == from || !all_.shells.keep(p_.point(p_.next(k)), d - reach, d + reach, ends)) return {};
+        }
+        return ends;
     }
 
     bool carries_link(int from, int to) const {

@@ -63,6 +63,7 @@ SymmetrySearchResult of_type(const std::vector<Cycle>& cycles, SymmetryType type
     const Clustering clustering =
         complete_components(members.size(), std::move(pairs), tolerance_max, resolution);
     result.frustrated = clustering.frustrated;
+    result.symmetries.reserve(members.size() + clustering.clusters.size());
     for (std::size_t m = 0; m < members.size(); ++m)
         result.symmetries.push_back(from_cycle(type, *members[m], clustering.clustered[m] == 0));
     for (const Cluster& c : clustering.clusters) result.symmetries.push_back(from_cluster(type, c, members));
@@ -112,6 +113,9 @@ SymmetrySearchResult detect_symmetries(const Scene& scene, const std::vector<Cyc
             parts[k] = of_type(cycles, type, std::move(consistent[static_cast<std::size_t>(type)]),
                                scene.resolution);
     });
+    std::size_t count = 0;
+    for (const SymmetrySearchResult& part : parts) count += part.symmetries.size();
+    result.symmetries.reserve(count);
     for (SymmetrySearchResult& part : parts) {
         result.frustrated += part.frustrated;
         std::move(part.symmetries.begin(), part.symmetries.end(), std::back_inserter(result.symmetries));
