@@ -139,14 +139,16 @@ void Fourths::build_listed(int b, RunMonitor& monitor) {
 }
 
 void Fourths::build(int b, const Mates& mates, RunMonitor& monitor) {
-    Apex& apex = apexes_[static_cast<std::size_t>(b)];
-    std::vector<Slot>& seeds = apex.seeds;
-    std::vector<Wing> left, right;
-    apex.fourths.push_back(kNobody);
+    // Where they grow is used again, apex after apex: they are as many as they are only in the end.
+    thread_local List fourths;
+    thread_local std::vector<Slot> seeds;
+    thread_local std::vector<Wing> left, right;
+    fourths.assign(1, kNobody);
+    seeds.clear();
     const double reach = reach_of(scene_);
     for (int c = 0; c < scene_.size(); ++c) {
         constexpr int kAskedOnce = 16;  // a look at the clock takes as long as a few sides
-        if (apex.fourths.size() > kMostStored || (c % kAskedOnce == 0 && monitor.should_stop())) return;
+        if (fourths.size() > kMostStored || (c % kAskedOnce == 0 && monitor.should_stop())) break;
         if (!mates.has(b, c) || !mates.has(c, b)) continue;
         wings(scene_, c, b, left);
         wings(scene_, b, c, right);
@@ -154,7 +156,7 @@ void Fourths::build(int b, const Mates& mates, RunMonitor& monitor) {
         std::size_t first = 0;
         for (const Wing& a : left) {
             while (first < right.size() && right[first].far < a.far - reach) ++first;
-            const std::size_t before = apex.fourths.size();
+            const std::size_t before = fourths.size();
             for (std::size_t k = first; k < right.size() && right[k].far <= a.far + reach; ++k) {
                 const Wing& d = right[k];
                 if (d.point == a.point) continue;
@@ -164,14 +166,17 @@ void Fourths::build(int b, const Mates& mates, RunMonitor& monitor) {
                 steps.include(d.far);
                 const double tolerance = tolerance_of_four(links, steps, scene_.distances(a.point, d.point),
                                                            scene_.resolution, scene_.max_tolerance);
-                if (tolerance <= scene_.max_tolerance) apex.fourths.push_back({tolerance, d.point});
+                if (tolerance <= scene_.max_tolerance) fourths.push_back({tolerance, d.point});
             }
-            if (apex.fourths.size() == before) continue;
-            std::sort(apex.fourths.begin() + static_cast<std::ptrdiff_t>(before), apex.fourths.end());
-            apex.fourths.push_back(kNobody);
+            if (fourths.size() == before) continue;
+            std::sort(fourths.begin() + static_cast<std::ptrdiff_t>(before), fourths.end());
+            fourths.push_back(kNobody);
             seeds.push_back({a.point, c, static_cast<SeedLink>(before)});
         }
     }
+    Apex& apex = apexes_[static_cast<std::size_t>(b)];
+    apex.fourths = fourths;
+    apex.seeds = seeds;
     fill_table(apex);
 }
 
