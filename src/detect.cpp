@@ -218,7 +218,9 @@ void tell_of_pairs(const std::vector<ExactKind>& kinds, DetectResult& result) {
 void run_paper(Scene scene, const DetectOptions& options, RunMonitor& monitor, DetectResult& result) {
     const auto start = std::chrono::steady_clock::now();
     const bool exact = is_searched_as_exact(scene, options);
-    const CycleSearch how{exact ? SeedChoice::needed : SeedChoice::all, options.max_chains};
+    CycleSearch how;
+    how.seeds = exact ? SeedChoice::needed : SeedChoice::all;
+    how.most_chains = options.max_chains;
     CycleSearchResult search = search_cycles(scene, options, how, monitor, result.diagnostics);
     tell_of_chains(search, scene, options, result);
     result.max_tolerance = scene.max_tolerance = search.max_tolerance;

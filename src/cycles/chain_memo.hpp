@@ -79,15 +79,6 @@ public:
         return slots_[s].entry;
     }
 
-    /// What is known of the path from `chain` on, which need not have been met.
-    Answer path(const Fingerprint& chain, bool prefers_lower) const {
-        std::size_t s = chain.low() & (slots_.size() - 1);
-        for (; slots_[s].entry != kFree; s = (s + 1) & (slots_.size() - 1))
-            if (slots_[s].low == chain.low() && slots_[s].high == chain.high())
-                return entries_[slots_[s].entry].path[prefers_lower ? 1 : 0];
-        return Answer::unknown;
-    }
-
     Known& operator[](Id id) {
         return entries_[id];
     }

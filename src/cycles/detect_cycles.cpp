@@ -67,6 +67,9 @@ private:
 struct Branches {
     double best = std::numeric_limits<double>::infinity();  ///< least E_min
     bool failed = false;                                    ///< did one find no cycle?
+    bool tied = false;                                      ///< did one depend on where ties go?
+
+    bool none() const { return best == std::numeric_limits<double>::infinity(); }
 };
 
 /// Those of each chain of four (a, b, c, d) beyond a, by where d is among the fourth points of b. Those
@@ -121,7 +124,9 @@ public:
 
     std::size_t visited() const { return visited_; }
     std::vector<std::pair<CanonicalCycle, TypeSet>>& found() { return found_; }
-    ToleranceInterval interval(std::span<const int> points, bool closed) { return oracle_.interval(points, closed); }
+    ToleranceInterval interval(std::span<const int> points, bool closed) {
+        return oracle_.interval(points, closed);
+    }
 
 private:
     bool is_start(int a, int b, int c, int d) const;
@@ -131,8 +136,8 @@ private:
     void follow_five(const FiveTable::Start& start, const std::array<int, 3>& seed, Branches& row,
                      Branches& column);
     bool replaces(const Candidate& other, std::span<const int, 4> four, std::size_t at, double eps);
-    bool resolve_four(std::span<const int> four, double tolerance, const Branches& left,
-                      const Branches& right);
+    bool resolve_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links,
+                      const Branches& left, const Branches& right);
     bool follow_path(double tolerance, std::optional<Ends> ends = {}, bool met_once = false);
     bool prefers_lower(int left, int right) const;
     void remember(std::span<const int> chain, ChainMemo::Id id, bool found, bool depends);
@@ -248,6 +253,7 @@ void Expansion::follow_five(const FiveTable::Start& start, const std::array<int,
             ends = first_ends_;
         }
         if (!*found) branches.failed = true;
+        if (tied_) branches.tied = true;
     };
     if (start.of_row) follow(End::right, row);
     if (start.of_column) follow(End::left, column);
@@ -257,6 +263,7 @@ void Expansion::follow_five(const FiveTable::Start& start, const std::array<int,
 void Expansion::resolve_fours(int apex) {
     fourths_.visit_seeds(apex, [&](int a, int c, SeedLink list) {
         const Candidate* const first = fourths_.of(apex, list);
+        const SeedLink beyond_a = fourths_.link(c, apex, a);
         std::size_t k = list;
         for (const Candidate* d = first; d->point >= 0; ++d, ++k) {
             if (d->point < a || !is_start(a, apex, c, d->point)) continue;
@@ -268,7 +275,9 @@ void Expansion::resolve_fours(int apex) {
             four_alone_.reset();
             if (replaces(*first, four, 3, d->tolerance) || replaces(*back_first, four, 0, d->tolerance))
                 four_alone_ = false;
-            if (resolve_four(four, d->tolerance, branches_.of(apex, k), branches_.of(c, back))) continue;
+            if (resolve_four(four, d->tolerance, {beyond_a, d->next}, branches_.of(apex, k),
+                             branches_.of(c, back)))
+                continue;
             failed_.add(apex, list);
             failed_.add(c, backwards);
         }
@@ -284,22 +293,28 @@ bool Expansion::replaces(const Candidate& other, std::span<const int, 4> four, s
     return eps < oracle_.interval(replaced, false).max;
 }
 
-/// The path of a chain of four is that of the best of its branches unless it closes; where a branch finds
-/// nothing, the chain itself is asked.
-bool Expansion::resolve_four(std::span<const int> four, double tolerance, const Branches& left,
-                             const Branches& right) {
-    chain_.assign(four);
-    const double best = std::min(left.best, right.best);
-    const bool ends_here = best > scene_.max_tolerance;
+/// After its branches. The path of a chain of four is that of the best of them unless it closes; where one
+/// finds nothing, the chain itself is asked.
+bool Expansion::resolve_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links,
+                             const Branches& left, const Branches& right) {
+    chain_.assign(four, links);
+    const bool ends_here = left.none() && right.none();
     // As with seeds; `four` is in canonical form.
     if (ends_here && !four_alone_ && type_oracle_.types(four, false, tolerance).empty()) four_alone_ = false;
     bool found = !ends_here;
     const double closed = oracle_.closed_tolerance(chain_);
-    const bool closes = closed <= std::min(best, scene_.max_tolerance);
+    const bool closes = closed <= std::min({left.best, right.best, scene_.max_tolerance});
     if (closes || ends_here)
         found = (closes && resolve_closed(four, Fingerprint(four, true), closed)) ||
                 resolve_open(four, tolerance);
-    if (left.failed || right.failed) found = resolve_open(four, tolerance) && found;
+    bool failed = left.failed || right.failed;
+    // Read the way in which it has nothing to its right, its own path grows to the left, but prefers the
+    // right.
+    if (!closes && left.none() != right.none() && (left.tied || right.tied)) {
+        preferred_ = left.none() ? End::left : End::right;
+        if (!follow_path(tolerance)) failed = true;
+    }
+    if (failed) found = resolve_open(four, tolerance) && found;
     return found;
 }
 
@@ -356,45 +371,40 @@ bool Expansion::may_be_on_line(const Seed& seed) const {
     return seed.ends / 2 >= seed.links.high - slack && seed.ends / 2 <= seed.links.low + slack;
 }
 
-/// In 3D also branches over the best fifth point at either end on each side of the plane of the three
-/// points there. True if every branch found a cycle, be it the chain of four itself.
+/// True if every branch found a cycle, be it the chain of four itself. In 3D it branches over the best fifth
+/// point at either end on each side of the plane of the three points there.
 bool Expansion::expand_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links) {
+    four_alone_.reset();
     chain_.assign(four, links);
+    if (scene_.dimension() != 3) {
+        preferred_ = End::right;
+        const bool found = follow_path(tolerance);
+        if (!tied_) return found;
+        chain_.assign(four, links);
+        preferred_ = End::left;
+        return follow_path(tolerance) && found;
+    }
     const Chain::Saved here = chain_.saved();
     const ChainOracle::Sides lefts = oracle_.best_on_sides(chain_, End::left, tolerance);
     const ChainOracle::Sides rights = oracle_.best_on_sides(chain_, End::right, tolerance);
-    for (const End end : {End::right, End::left})
-        for (const Candidate& fifth : end == End::left ? lefts : rights)
-            if (fifth.point >= 0) memo_.prefetch(chain_.fingerprint_with(fifth.point, end));
-    const Ends best{*std::min_element(lefts.begin(), lefts.end()),
-                    *std::min_element(rights.begin(), rights.end())};
-    four_alone_.reset();
-    // As with seeds; `four` is in canonical form.
-    if (best.first.point < 0 && best.second.point < 0 && type_oracle_.types(four, false, tolerance).empty())
-        four_alone_ = false;
-    preferred_ = End::right;
-    bool found = follow_path(tolerance, best);
-    if (tied_) {
-        chain_.restore(here);
-        preferred_ = End::left;
-        found = follow_path(tolerance, best) && found;
-    }
-    if (scene_.dimension() != 3) return found;
-    for (const End end : {End::right, End::left})
-        for (const Candidate& fifth : end == End::left ? lefts : rights) {
+    const auto branches = [&](const ChainOracle::Sides& fifths, End end) {
+        Branches result;
+        for (const Candidate& fifth : fifths) {
             if (fifth.point < 0) continue;
+            result.best = std::min(result.best, fifth.tolerance);
             chain_.restore(here);
             preferred_ = end;
-            if (!follow_branch(fifth, end) && !resolve_open(four, tolerance)) found = false;
+            if (!follow_branch(fifth, end)) result.failed = true;
+            if (tied_) result.tied = true;
         }
-    return found;
+        return result;
+    };
+    const Branches right = branches(rights, End::right), left = branches(lefts, End::left);
+    return resolve_four(four, tolerance, links, left, right);
 }
 
-/// The path of chain_ with `next` at `end`, which is preferred; chain_ does not grow where that is known.
+/// The path of chain_ with `next` at `end`, which is preferred.
 bool Expansion::follow_branch(const Candidate& next, End end) {
-    const int other = chain_.from(end == End::left ? End::right : End::left, 0);
-    const Answer known = memo_.path(chain_.fingerprint_with(next.point, end), next.point < other);
-    if (known != Answer::unknown) return known == Answer::yes;
     chain_.add(next, end);
     return follow_path(next.tolerance);
 }
@@ -419,7 +429,7 @@ void Expansion::remember(std::span<const int> chain, ChainMemo::Id id, bool foun
 bool Expansion::follow_path(double tolerance, std::optional<Ends> ends, bool met_once) {
     path_.clear();
     std::size_t tied = 0;  // so many of the first steps depend on the preferred end
-    bool found = false;
+    bool found = false, depends = false;
     while (true) {
         // What is far off in memory is asked for before it is needed.
         const Fingerprint ring = chain_.fingerprint_with(chain_.from(End::left, 0), End::right);
@@ -434,7 +444,8 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends, bool met
             const auto known = memo_[id].path[lower ? 1 : 0];
             if (known != Answer::unknown) {
                 found = known == Answer::yes;
-                if (memo_[id].path[lower ? 0 : 1] != known) tied = path_.size();
+                depends = memo_[id].path[lower ? 0 : 1] != known;
+                if (depends) tied = path_.size();
                 break;
             }
         }
@@ -464,7 +475,7 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends, bool met
         chain_.add(next, to);
         tolerance = next.tolerance;
     }
-    tied_ = tied > 0;
+    tied_ = depends || tied > 0;
     // Back along the path, each chain a window of the last.
     std::span<const int> window = chain_.points();
     int replaced = -1;  // a point of the window that another can replace at the resolution
@@ -648,7 +659,7 @@ CycleSearchResult detect_cycles(const Scene& scene, const CycleSearch& how, RunM
     for (Scene lowered = scene;; lowered.max_tolerance *= kLower) {
         const Seeds seeds(lowered, rows, monitor);
         const bool can_lower = kLower * lowered.max_tolerance >= kLeastResolutions * scene.resolution;
-        const Fourths fourths(lowered, seeds, can_lower ? how.most_chains : 0, monitor);
+        const Fourths fourths(lowered, seeds, can_lower ? how.most_chains : 0, monitor, how.most_stored);
         if (fourths.too_many()) continue;
         CycleSearchResult result = search(lowered, seeds, fourths, monitor);
         result.translations = rows.translations();

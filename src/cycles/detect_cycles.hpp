@@ -19,6 +19,9 @@ struct CycleSearch {
     /// With more chains of four points the tolerance is lowered, a fifth at a time and not below ten
     /// resolutions, until there are no more; 0: never.
     std::size_t most_chains = 0;
+    /// Of the ends of chains of four, kept in memory; with more, all are made anew when asked for. Only the
+    /// time depends on it.
+    std::size_t most_stored = std::size_t{1} << 25;
 };
 
 struct CycleSearchResult {

@@ -81,9 +81,11 @@ private:
     std::vector<std::uint64_t> bits_;
 };
 
-Fourths::Fourths(const Scene& scene, const Seeds& seeds, std::size_t most_chains, RunMonitor& monitor)
+Fourths::Fourths(const Scene& scene, const Seeds& seeds, std::size_t most_chains, RunMonitor& monitor,
+                 std::size_t most_stored)
     : scene_(scene),
       listed_(seeds.listed() ? &seeds : nullptr),
+      most_stored_(most_stored),
       stored_(true),
       apexes_(static_cast<std::size_t>(scene.size())) {
     build_all(most_chains, monitor);
@@ -97,7 +99,7 @@ void Fourths::build_all(std::size_t most_chains, RunMonitor& monitor) {
     const auto exceeds = [&] {
         return most_chains > 0 && chains.load(std::memory_order_relaxed) > 2 * most_chains;
     };
-    const auto full = [&] { return stored.load(std::memory_order_relaxed) > kMostStored; };
+    const auto full = [&] { return stored.load(std::memory_order_relaxed) > most_stored_; };
     parallel_for(scene_.size(), [&](int b) {
         if (exceeds() || (most_chains == 0 && full())) return;
         if (mates)
@@ -131,7 +133,7 @@ void Fourths::build_listed(int b, RunMonitor& monitor) {
     };
     if (monitor.should_stop()) return;
     for (const Seed& seed : listed_->of(b)) {
-        if (apex.fourths.size() > kMostStored) return;
+        if (apex.fourths.size() > most_stored_) return;
         add(seed.a, seed.c);
         add(seed.c, seed.a);
     }
@@ -148,7 +150,7 @@ void Fourths::build(int b, const Mates& mates, RunMonitor& monitor) {
     const double reach = reach_of(scene_);
     for (int c = 0; c < scene_.size(); ++c) {
         constexpr int kAskedOnce = 16;  // a look at the clock takes as long as a few sides
-        if (fourths.size() > kMostStored || (c % kAskedOnce == 0 && monitor.should_stop())) break;
+        if (fourths.size() > most_stored_ || (c % kAskedOnce == 0 && monitor.should_stop())) break;
         if (!mates.has(b, c) || !mates.has(c, b)) continue;
         wings(scene_, c, b, left);
         wings(scene_, b, c, right);

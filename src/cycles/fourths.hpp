@@ -36,14 +36,18 @@ struct Candidate {
 ///
 /// Cost: a chain of four is two triangles with a common side (B, C): for each side the apexes A and D are
 /// sorted by their distance to the far end, which must agree. O(n^2) sides with a handful of apexes each,
-/// plus the result. Where the result would take more than `kMostStored` items (large tolerances on many
+/// plus the result. Where the result would take more than `most_stored` items (large tolerances on many
 /// points), nothing is stored and each list is made when it is asked for.
 class Fourths {
 public:
     using List = std::vector<Candidate>;
 
-    /// With more than `most_chains` chains of four it gives up, and says so; 0: it does not.
-    Fourths(const Scene& scene, const Seeds& seeds, std::size_t most_chains, RunMonitor& monitor);
+    static constexpr std::size_t kMostStored = std::size_t{1} << 25;  // of 16 bytes
+
+    /// With more than `most_chains` chains of four it gives up, and says so; 0: it does not. More than
+    /// `most_stored` items are not kept.
+    Fourths(const Scene& scene, const Seeds& seeds, std::size_t most_chains, RunMonitor& monitor,
+            std::size_t most_stored = kMostStored);
     /// Stores nothing, for few questions.
     explicit Fourths(const Scene& scene) : scene_(scene) {}
 
@@ -69,7 +73,9 @@ public:
         return known == kEmpty && listed_ != nullptr && listed_->superfluous(a, b, c) ? kUnknownLink : known;
     }
 
-    bool stored() const { return stored_; }
+    bool stored() const {
+        return stored_;
+    }
     /// Calls visit(a, c, link) for each seed (a, b, c) whose fourth points are stored, in both directions;
     /// those of one c one after the other, as what is asked about them lies close together.
     template <class Visit>
@@ -77,14 +83,15 @@ public:
         for (const Slot& seed : apexes_[static_cast<std::size_t>(b)].seeds) visit(seed.a, seed.c, seed.first);
     }
     /// How many items are stored about `b`: links are below that.
-    std::size_t stored_about(int b) const { return apexes_[static_cast<std::size_t>(b)].fourths.size(); }
+    std::size_t stored_about(int b) const {
+        return apexes_[static_cast<std::size_t>(b)].fourths.size();
+    }
     static constexpr Candidate kNobody{std::numeric_limits<double>::infinity(), -1};
     static constexpr SeedLink kEmpty = 0;  ///< an empty list, the first of each apex
 
 private:
-    static constexpr std::size_t kMostStored = std::size_t{1} << 25;  // of 16 bytes
-
-    /// Up to so many points the links of one apex are a square, of larger sets an open hash table over (a, c).
+    /// Up to so many points the links of one apex are a square, of larger sets an open hash table over (a,
+    /// c).
     static constexpr int kMostInSquare = 160;
 
     /// A seed (a, b, c) with one b.
@@ -119,6 +126,7 @@ private:
 
     const Scene& scene_;
     const Seeds* listed_ = nullptr;  // the seeds, where they are not all there are
+    std::size_t most_stored_ = kMostStored;
     bool stored_ = false;
     bool too_many_ = false;
     std::vector<Apex> apexes_;

@@ -96,7 +96,8 @@ RegionSearchResult detect_cycles_in_regions(const Scene& scene, const Regions& r
         result.search = detect_cycles(scene, how, monitor);
         return result;
     }
-    const CycleSearch in_slab{how.seeds, 0};
+    CycleSearch in_slab = how;
+    in_slab.most_chains = 0;
     result.search.max_tolerance = scene.max_tolerance;
     std::vector<Cycle>& cycles = result.search.cycles;
     for (const std::vector<int>& slab : slabs(scene, regions.count, result.axis)) {

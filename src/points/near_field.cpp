@@ -84,9 +84,10 @@ void NearField::images_near(const Isometry& isometry, double reach, std::vector<
             return static_cast<float>(static_cast<int>(std::min(std::max(v, 0.0F), last_[axis])));
         };
         for (std::size_t i = 0; i < block; ++i)
-            cells[i] = static_cast<int>(along(m[0][0] * x[i] + m[0][1] * y[i] + m[0][2] * z[i] + t[0], 0) * layer +
-                                        along(m[1][0] * x[i] + m[1][1] * y[i] + m[1][2] * z[i] + t[1], 1) * row +
-                                        along(m[2][0] * x[i] + m[2][1] * y[i] + m[2][2] * z[i] + t[2], 2));
+            cells[i] =
+                static_cast<int>(along(m[0][0] * x[i] + m[0][1] * y[i] + m[0][2] * z[i] + t[0], 0) * layer +
+                                 along(m[1][0] * x[i] + m[1][1] * y[i] + m[1][2] * z[i] + t[1], 1) * row +
+                                 along(m[2][0] * x[i] + m[2][1] * y[i] + m[2][2] * z[i] + t[2], 2));
         for (std::size_t i = 0; i < block; ++i) {
             const float distance = distance_[static_cast<std::size_t>(cells[i])];
             out[found] = {static_cast<int>(begin + i), distance <= least};

@@ -1,5 +1,5 @@
-// How far the nearest point is, all over the box of a set, roughly: "is there one within this reach?", without a
-// search.
+// How far the nearest point is, all over the box of a set, roughly: "is there one within this reach?",
+// without a search.
 #pragma once
 
 #include "insym/isometry.hpp"
@@ -11,8 +11,8 @@
 namespace insym {
 
 /// The distance from the middle of each cell of a grid to the nearest point. Immutable after construction,
-/// thread-safe. Memory: 32,768 cells of 4 bytes, about. Time: cells * points, so it is for small sets that are
-/// asked very often.
+/// thread-safe. Memory: 32,768 cells of 4 bytes, about. Time: cells * points, so it is for small sets that
+/// are asked very often.
 class NearField {
 public:
     explicit NearField(const std::vector<Point>& positions);
@@ -22,8 +22,8 @@ public:
         int point = 0;
         bool surely = false;
     };
-    /// Sets `out` to those points, ascending. In single precision, which the cells allow for. O(points), a few
-    /// cycles for each.
+    /// Sets `out` to those points, ascending. In single precision, which the cells allow for. O(points), a
+    /// few cycles for each.
     void images_near(const Isometry& isometry, double reach, std::vector<Near>& out) const;
 
 private:
@@ -38,10 +38,10 @@ private:
 
     Point origin_{};
     double cell_ = 1;
-    double slack_ = 0;                      // half the diagonal of a cell, and the rounding
-    std::array<float, 3> last_{0, 0, 0};    // of the cells along each axis
-    std::vector<float> x_, y_, z_;          // of the points, in cells
-    std::vector<float> distance_;           // NaN in the border
+    double slack_ = 0;                    // half the diagonal of a cell, and the rounding
+    std::array<float, 3> last_{0, 0, 0};  // of the cells along each axis
+    std::vector<float> x_, y_, z_;        // of the points, in cells
+    std::vector<float> distance_;         // NaN in the border
 };
 
 }  // namespace insym

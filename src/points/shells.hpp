@@ -11,9 +11,9 @@
 
 namespace insym {
 
-/// For each point and each number k the set of the k points nearest to it; a shell is the difference of two of
-/// those. Immutable after construction, reading is thread-safe. For up to kMostPoints points: n^3 / 8 bytes. Of larger sets it
-/// keeps nothing.
+/// For each point and each number k the set of the k points nearest to it; a shell is the difference of two
+/// of those. Immutable after construction, reading is thread-safe. For up to kMostPoints points: n^3 / 8
+/// bytes. Of larger sets it keeps nothing.
 class Shells {
 public:
     static constexpr int kMostPoints = 256;
@@ -29,7 +29,8 @@ public:
             for (const int p : distances.nearest_first(i)) {
                 set[1] = set[0];
                 ++set;
-                (*set)[static_cast<std::size_t>(p) / 64] |= std::uint64_t{1} << (static_cast<unsigned>(p) % 64U);
+                (*set)[static_cast<std::size_t>(p) / 64] |= std::uint64_t{1}
+                                                            << (static_cast<unsigned>(p) % 64U);
             }
         }
     }

@@ -9,8 +9,8 @@
 
 #include "cycles/tolerance_interval.hpp"
 #include "isometry/fit.hpp"
-#include "points/shells.hpp"
 #include "parallel_for.hpp"
+#include "points/shells.hpp"
 #include "symmetries/anchors.hpp"
 
 namespace insym {
@@ -101,7 +101,10 @@ private:
 class Strands {
 public:
     Strands(const Scene& points, const std::vector<Cycle>& cycles)
-        : scene(points), anchors(cycles, points.size()), shells(points.distances), rounding(1e-12 * points.diameter) {
+        : scene(points),
+          anchors(cycles, points.size()),
+          shells(points.distances),
+          rounding(1e-12 * points.diameter) {
         for (const Cycle& c : cycles) points_.insert(points_.end(), c.points.begin(), c.points.end());
         const int* next = points_.data();
         for (const Cycle& c : cycles) {
@@ -210,7 +213,8 @@ private:
                     if (!(types & link.types).empty()) unions_.push_back({link.cycle, link.reversed});
             };
             if (all_.shells.stored()) {
-                Shells::visit(possible_ends(place, from), [&](int to) { ask(to, all_.anchors.links(place, to)); });
+                Shells::visit(possible_ends(place, from),
+                              [&](int to) { ask(to, all_.anchors.links(place, to)); });
                 continue;
             }
             // Whichever are fewer: the ends of links, or the points as far from the second as the anchor is
@@ -225,15 +229,17 @@ private:
                 if (distance(k, from) < distance(nearest, from)) nearest = k;
             const double d = distance(nearest, from);
             const double reach = limit_ + all_.rounding;
-            scene_.distances.visit_shell(p_.point(p_.next(nearest)), d - reach, d + reach, [&](int to, double) {
-                const auto links = all_.anchors.links(place, to);
-                if (!links.empty()) ask(to, links);
-                return true;
-            });
+            scene_.distances.visit_shell(p_.point(p_.next(nearest)), d - reach, d + reach,
+                                         [&](int to, double) {
+                                             const auto links = all_.anchors.links(place, to);
+                                             if (!links.empty()) ask(to, links);
+                                             return true;
+                                         });
         }
     }
 
-    /// Of the links from the anchor `from`: what lies as far from the end of each link of this cycle as the anchor from its start.
+    /// Of the links from the anchor `from`: what lies as far from the end of each link of this cycle as the
+    /// anchor from its start.
     Shells::Set possible_ends(int place, int from) const {
         Shells::Set ends{};
         for (int w = 0; w < all_.anchors.words(); ++w)
@@ -241,7 +247,8 @@ private:
         const double reach = limit_ + all_.rounding;
         for (int k = 0; k < p_.links(); ++k) {
             const double d = distance(k, from);
-            if (p_.point(k) == from || !all_.shells.keep(p_.point(p_.next(k)), d - reach, d + reach, ends)) return {};
+            if (p_.point(k) == from || !all_.shells.keep(p_.point(p_.next(k)), d - reach, d + reach, ends))
+                return {};
         }
         return ends;
     }

@@ -149,7 +149,9 @@ RC_GTEST_PROP(Rows, cycles_are_some_of_those_from_all_seeds, ()) {
     RunMonitor monitor(context);
     const Regions regions{*rc::gen::element(1, 2), 1};  // slabs along y: each side has rows of its own
     const auto search = [&](SeedChoice seeds) {
-        return detect_cycles_in_regions(scene, regions, {seeds, 0}, monitor).search;
+        CycleSearch how;
+        how.seeds = seeds;
+        return detect_cycles_in_regions(scene, regions, how, monitor).search;
     };
     const CycleSearchResult some = search(SeedChoice::needed), all = search(SeedChoice::all);
     RC_ASSERT(some.superfluous_seeds > 0U && all.superfluous_seeds == 0U);
