@@ -139,6 +139,7 @@ private:
     bool resolve_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links,
                       const Branches& left, const Branches& right);
     bool follow_path(double tolerance, std::optional<Ends> ends = {}, bool met_once = false);
+    bool fall_back(bool found, std::size_t tied);
     bool prefers_lower(int left, int right) const;
     void remember(std::span<const int> chain, ChainMemo::Id id, bool found, bool depends);
     bool follow_branch(const Candidate& next, End end);
@@ -271,7 +272,7 @@ void Expansion::resolve_fours(int apex) {
             const SeedLink backwards = fourths_.link(d->point, c, apex);
             const Candidate* const back_first = fourths_.of(c, backwards);
             std::size_t back = backwards;
-            for (const Candidate* p = back_first; p->point != a; ++p) ++back;
+            for (const Candidate* p = back_first; p->point >= 0 && p->point != a; ++p) ++back;
             four_alone_.reset();
             if (replaces(*first, four, 3, d->tolerance) || replaces(*back_first, four, 0, d->tolerance))
                 four_alone_ = false;
@@ -476,7 +477,12 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends, bool met
         tolerance = next.tolerance;
     }
     tied_ = depends || tied > 0;
-    // Back along the path, each chain a window of the last.
+    return fall_back(found, tied);
+}
+
+/// Back along path_ from chain_, each chain a window of the last: while nothing is `found`, is it in the
+/// window? `tied`: so many of the first steps depend on the preferred end.
+bool Expansion::fall_back(bool found, std::size_t tied) {
     std::span<const int> window = chain_.points();
     int replaced = -1;  // a point of the window that another can replace at the resolution
     for (; !path_.empty(); path_.pop_back()) {
