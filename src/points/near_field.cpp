@@ -21,7 +21,7 @@ NearField::NearField(const std::vector<Point>& positions) {
     for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, top[k] - origin_[k]);
     if (!(longest > 0)) longest = 1;
     const auto count_of = [&](std::size_t k) {
-        return std::floor((top[k] - origin_[k]) / cell_) + 1 + 2 * kBorder;
+        return std::floor((top[k] - origin_[k]) / cell_) + 1 + 2 * static_cast<double>(kBorder);
     };
     cell_ = 1e-3 * longest;
     while (count_of(0) * count_of(1) * count_of(2) > kMostCells) cell_ *= 1.1;
@@ -30,7 +30,7 @@ NearField::NearField(const std::vector<Point>& positions) {
     slack_ = std::sqrt(3.0) / 2 * cell_ + 1e-5 * longest;
     for (const Point& p : positions) {
         const auto place = [&](std::size_t k) {
-            return static_cast<float>((p[k] - origin_[k]) / cell_ + kBorder);
+            return static_cast<float>((p[k] - origin_[k]) / cell_ + static_cast<double>(kBorder));
         };
         x_.push_back(place(0));
         y_.push_back(place(1));
@@ -63,7 +63,7 @@ void NearField::fill_layer(std::size_t x, const std::vector<Point>& positions) {
 void NearField::images_near(const Isometry& isometry, double reach, std::vector<Near>& out) const {
     // The isometry in cells: it takes the corner of cell 0 there.
     Point corner = origin_;
-    for (double& c : corner) c -= kBorder * cell_;
+    for (double& c : corner) c -= static_cast<double>(kBorder) * cell_;
     const Point image = isometry.apply(corner);
     float m[3][3], t[3];
     for (std::size_t i = 0; i < 3; ++i) {

@@ -30,11 +30,11 @@ private:
     void fill_layer(std::size_t x, const std::vector<Point>& positions);
     /// The middle of a cell, the border counted.
     double middle(std::size_t cell, std::size_t axis) const {
-        return origin_[axis] + (static_cast<double>(cell) - kBorder + 0.5) * cell_;
+        return origin_[axis] + (static_cast<double>(cell) - static_cast<double>(kBorder) + 0.5) * cell_;
     }
     std::size_t count(std::size_t axis) const { return static_cast<std::size_t>(last_[axis]) + 1; }
 
-    static constexpr int kBorder = 1;  // cells outside on either side, about which nothing is said
+    static constexpr std::size_t kBorder = 1;  // cells outside on either side, about which nothing is said
 
     Point origin_{};
     double cell_ = 1;
