@@ -223,9 +223,9 @@ private:
                 all_.anchors.visit_ends(place, ask);
                 continue;
             }
-            // About the end of the link whose start is nearest: a small shell has few points.
+            // A wide shell: about the end of the link whose start is nearest, as a small one has few points.
             int nearest = 0;
-            for (int k = 1; k < p_.links(); ++k)
+            for (int k = 1; limit_ > kWide * scene_.diameter && k < p_.links(); ++k)
                 if (distance(k, from) < distance(nearest, from)) nearest = k;
             const double d = distance(nearest, from);
             const double reach = limit_ + all_.rounding;
@@ -351,7 +351,8 @@ private:
         return std::sqrt(std::max(0.0, 8 * std::abs(det) / (square * sums.count) - rounding));
     }
 
-    static constexpr double kShell = 8;  // points in a narrow shell, about
+    static constexpr double kShell = 8;    // points in a narrow shell, about
+    static constexpr double kWide = 1e-3;  // of the diameter
 
     const Strands& all_;
     const Scene& scene_;
