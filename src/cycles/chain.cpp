@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cycles/side.hpp"
+
 namespace insym {
 namespace {
 
@@ -24,20 +26,6 @@ void Chain::assign(std::span<const int> points, std::array<SeedLink, 2> links) {
         const double* d = scene_->distances.row(points[i]).data();
         for (std::size_t j = i + 1; j < c; ++j) orbits_[j - i - 1].include(d[points[j]]);
     }
-}
-
-Chain::Saved Chain::saved() const {
-    Saved saved{begin_, end_, links_, fingerprint_, {}};
-    std::copy_n(orbits_.begin(), end_ - begin_ - 1, saved.orbits.begin());
-    return saved;
-}
-
-void Chain::restore(const Saved& saved) {
-    begin_ = saved.begin;
-    end_ = saved.end;
-    links_ = saved.links;
-    fingerprint_ = saved.fingerprint;
-    std::copy_n(saved.orbits.begin(), end_ - begin_ - 1, orbits_.begin());
 }
 
 // --- short sequences -----------------------------------------------------------------------------
@@ -222,22 +210,11 @@ Candidate ChainOracle::best_candidate(const Chain& chain, End end, double least,
 }
 
 ChainOracle::Sides ChainOracle::best_on_sides(const Chain& chain, End end, double least) {
-    const auto from_third = [&](int i) {
-        const Point& a = scene_.position(chain.from(end, 2));
-        const Point& p = scene_.position(i);
-        return Point{p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-    };
-    const Point u = from_third(chain.from(end, 1)), v = from_third(chain.from(end, 0));
-    const Point normal = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-    const auto side = [&](int q) {
-        const Point w = from_third(q);
-        const double volume = normal[0] * w[0] + normal[1] * w[1] + normal[2] * w[2];
-        return scene_.dimension() == 2 || volume == 0 ? 1 : volume > 0 ? 2 : 0;
-    };
+    const std::array<int, 3> plane = {chain.from(end, 2), chain.from(end, 1), chain.from(end, 0)};
     Sides best = {kNobody, kNobody, kNobody};
     const Chain::Inwards inwards = chain.from(end);
     for (const Candidate* q = list_for(chain, end); q->point >= 0; ++q) {
-        Candidate& here = best[side(q->point)];
+        Candidate& here = best[static_cast<std::size_t>(side_of(scene_, plane, q->point))];
         if (!may_be_better(*q, here, least)) continue;
         const double limit = std::min(here.tolerance, scene_.max_tolerance);
         here = std::min(here, {extended_tolerance(chain, inwards, *q, limit), q->point, q->next});

@@ -42,18 +42,6 @@ public:
     }
     void add(const Candidate& next, End end) { add(next.point, end, next.next); }
 
-    static constexpr int kLongestSaved = 4;
-    /// A chain of at most kLongestSaved points, to come back to from the longer ones that it grew to.
-    struct Saved {
-        std::size_t begin = 0;
-        std::size_t end = 0;
-        std::array<SeedLink, 2> links;
-        Fingerprint fingerprint;
-        std::array<Span, kLongestSaved - 1> orbits;
-    };
-    Saved saved() const;
-    void restore(const Saved& saved);
-
     int size() const { return static_cast<int>(end_ - begin_); }
     std::span<const int> points() const { return {buffer_.data() + begin_, end_ - begin_}; }
     /// The points counted from one end, from 0.

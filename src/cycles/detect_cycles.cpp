@@ -142,7 +142,6 @@ private:
     bool fall_back(bool found, std::size_t tied);
     bool prefers_lower(int left, int right) const;
     void remember(std::span<const int> chain, ChainMemo::Id id, bool found, bool depends);
-    bool follow_branch(const Candidate& next, End end);
     Ends best_ends(double least, double limit);
     End better_end(const Candidate& left, const Candidate& right) const;
     bool resolve_open(std::span<const int> chain, double tolerance);
@@ -385,7 +384,6 @@ bool Expansion::expand_four(std::span<const int> four, double tolerance, std::ar
         preferred_ = End::left;
         return follow_path(tolerance) && found;
     }
-    const Chain::Saved here = chain_.saved();
     const ChainOracle::Sides lefts = oracle_.best_on_sides(chain_, End::left, tolerance);
     const ChainOracle::Sides rights = oracle_.best_on_sides(chain_, End::right, tolerance);
     const auto branches = [&](const ChainOracle::Sides& fifths, End end) {
@@ -393,21 +391,16 @@ bool Expansion::expand_four(std::span<const int> four, double tolerance, std::ar
         for (const Candidate& fifth : fifths) {
             if (fifth.point < 0) continue;
             result.best = std::min(result.best, fifth.tolerance);
-            chain_.restore(here);
+            chain_.assign(four, links);
+            chain_.add(fifth, end);
             preferred_ = end;
-            if (!follow_branch(fifth, end)) result.failed = true;
+            if (!follow_path(fifth.tolerance)) result.failed = true;
             if (tied_) result.tied = true;
         }
         return result;
     };
     const Branches right = branches(rights, End::right), left = branches(lefts, End::left);
     return resolve_four(four, tolerance, links, left, right);
-}
-
-/// The path of chain_ with `next` at `end`, which is preferred.
-bool Expansion::follow_branch(const Candidate& next, End end) {
-    chain_.add(next, end);
-    return follow_path(next.tolerance);
 }
 
 /// Is the end that a tie goes to that of the lower index? The same for a chain and its reverse.

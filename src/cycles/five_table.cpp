@@ -4,19 +4,6 @@
 
 namespace insym {
 
-/// Of the plane of the last three points of a chain of four, from its end outwards.
-int FiveTable::side(const std::array<int, 3>& last, int point) const {
-    const auto from_first = [&](int i) {
-        const Point& a = scene_.position(last[0]);
-        const Point& p = scene_.position(i);
-        return Point{p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-    };
-    const Point u = from_first(last[1]), v = from_first(last[2]), w = from_first(point);
-    const Point normal = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-    const double volume = normal[0] * w[0] + normal[1] * w[1] + normal[2] * w[2];
-    return volume == 0 ? 1 : volume > 0 ? 2 : 0;
-}
-
 void FiveTable::fill_cells() {
     const auto& d = scene_.distances;
     cells_.assign(rows_.size() * columns_.size(), Cell{});

@@ -3,11 +3,11 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "cycles/fourths.hpp"
+#include "cycles/side.hpp"
 #include "cycles/tolerance_interval.hpp"
 #include "scene.hpp"
 
@@ -81,9 +81,8 @@ private:
                  std::vector<Side>& out) {
         out.clear();
         for (; list->point >= 0; ++list)
-            out.push_back({{*list, follows(list->point)}, side(last, list->point), {}});
+            out.push_back({{*list, follows(list->point)}, side_of(scene_, last, list->point), {}});
     }
-    int side(const std::array<int, 3>& last, int point) const;
     void fill_cells();
     void ask(std::size_t cell, Side& row, Side& column, const std::array<Span, 3>& four);
     void find_starts();

@@ -6,12 +6,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "points/image_cells.hpp"
+
 namespace insym {
 
 /// Marks the cells of a fine grid that hold a point, and those around them. Immutable after construction,
 /// thread-safe. At most 2^22 cells, a bit each.
 class NearCells {
 public:
+    /// `positions` is not empty.
     explicit NearCells(const std::vector<Point>& positions);
 
     /// Up to this distance the question may be asked.
@@ -22,15 +25,8 @@ public:
     void images_near(const Isometry& isometry, std::vector<int>& out) const;
 
 private:
-    int cell(float x, float y, float z) const;
-
-    std::vector<float> x_, y_, z_;  // of the points, in cells
-    Point origin_{};
+    ImageCells cells_;  // of which the outermost are empty
     double largest_reach_ = 0;
-    double cell_ = 1;
-    float last_[3] = {0, 0, 0};  // of the cells along each axis, which are empty, as are the first
-    float row_ = 0;              // cells of z
-    float layer_ = 0;            // cells of y and z
     std::vector<std::uint64_t> bits_;
 };
 

@@ -4,9 +4,10 @@
 
 #include "insym/isometry.hpp"
 
-#include <array>
 #include <cstddef>
 #include <vector>
+
+#include "points/image_cells.hpp"
 
 namespace insym {
 
@@ -15,6 +16,7 @@ namespace insym {
 /// are asked very often.
 class NearField {
 public:
+    /// `positions` is not empty.
     explicit NearField(const std::vector<Point>& positions);
 
     /// A point whose image may have a point of the set within the reach, or surely has one.
@@ -28,20 +30,10 @@ public:
 
 private:
     void fill_layer(std::size_t x, const std::vector<Point>& positions);
-    /// The middle of a cell, the border counted.
-    double middle(std::size_t cell, std::size_t axis) const {
-        return origin_[axis] + (static_cast<double>(cell) - static_cast<double>(kBorder) + 0.5) * cell_;
-    }
-    std::size_t count(std::size_t axis) const { return static_cast<std::size_t>(last_[axis]) + 1; }
 
-    static constexpr std::size_t kBorder = 1;  // cells outside on either side, about which nothing is said
-
-    Point origin_{};
-    double cell_ = 1;
-    double slack_ = 0;                    // half the diagonal of a cell, and the rounding
-    std::array<float, 3> last_{0, 0, 0};  // of the cells along each axis
-    std::vector<float> x_, y_, z_;        // of the points, in cells
-    std::vector<float> distance_;         // NaN in the border
+    ImageCells cells_;
+    double slack_ = 0;             // half the diagonal of a cell, and the rounding
+    std::vector<float> distance_;  // NaN in the border, about which nothing is said
 };
 
 }  // namespace insym

@@ -223,18 +223,13 @@ private:
                 all_.anchors.visit_ends(place, ask);
                 continue;
             }
-            // A wide shell: about the end of the link whose start is nearest, as a small one has few points.
-            int nearest = 0;
-            for (int k = 1; limit_ > kWide * scene_.diameter && k < p_.links(); ++k)
-                if (distance(k, from) < distance(nearest, from)) nearest = k;
-            const double d = distance(nearest, from);
+            const double d = distance(0, from);
             const double reach = limit_ + all_.rounding;
-            scene_.distances.visit_shell(p_.point(p_.next(nearest)), d - reach, d + reach,
-                                         [&](int to, double) {
-                                             const auto links = all_.anchors.links(place, to);
-                                             if (!links.empty()) ask(to, links);
-                                             return true;
-                                         });
+            scene_.distances.visit_shell(p_.point(1), d - reach, d + reach, [&](int to, double) {
+                const auto links = all_.anchors.links(place, to);
+                if (!links.empty()) ask(to, links);
+                return true;
+            });
         }
     }
 
@@ -351,8 +346,7 @@ private:
         return std::sqrt(std::max(0.0, 8 * std::abs(det) / (square * sums.count) - rounding));
     }
 
-    static constexpr double kShell = 8;    // points in a narrow shell, about
-    static constexpr double kWide = 1e-3;  // of the diameter
+    static constexpr double kShell = 8;  // points in a narrow shell, about
 
     const Strands& all_;
     const Scene& scene_;

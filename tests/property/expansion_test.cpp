@@ -132,6 +132,15 @@ RC_GTEST_PROP(NearField, says_nothing_wrong_about_any_image, ()) {
         double nearest = INFINITY;
         for (const Point& p : points.positions)
             nearest = std::min(nearest, std::hypot(image[0] - p[0], image[1] - p[1], image[2] - p[2]));
+        bool inside = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [low, high] =
+                std::minmax_element(points.positions.begin(), points.positions.end(),
+                                    [&](const Point& a, const Point& b) { return a[k] < b[k]; });
+            inside = inside && (*low)[k] < image[k] && image[k] < (*high)[k];
+        }
+        // Nor too little: a cell is small.
+        if (inside && std::abs(nearest - reach) > 0.1 * length) RC_ASSERT(said[i] != 1);
         if (said[i] == 0) RC_ASSERT(nearest > reach);
         if (said[i] == 2) RC_ASSERT(nearest <= reach);
     }
