@@ -28,7 +28,7 @@
 namespace insym {
 namespace {
 
-/// 21 n^2 bytes of distances are 4.7 GB then.
+/// 13 n^2 bytes of distances are 2.9 GB then.
 constexpr std::size_t kMostPoints = 15000;
 
 constexpr int kMostRegions = 10000;

@@ -202,7 +202,7 @@ bool may_be_better(const Candidate& q, const Candidate& best, double least) {
 Candidate ChainOracle::best_candidate(const Chain& chain, End end, double least, double limit) {
     Candidate best{limit, std::numeric_limits<int>::max()};
     const Chain::Inwards inwards = chain.from(end);
-    for (const Candidate* q = list_for(chain, end); q->tolerance <= best.tolerance; ++q) {
+    for (const Candidate* q = list_for(chain, end); *q < best; ++q) {
         if (!may_be_better(*q, best, least)) continue;
         best = std::min(best, {extended_tolerance(chain, inwards, *q, best.tolerance), q->point, q->next});
     }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "parallel_for.hpp"
@@ -30,7 +29,6 @@ Distances::Distances(const std::vector<Point>& positions, const std::vector<char
       place_(positions.size()) {
     int places = 0;
     for (std::size_t i = 0; i < positions.size(); ++i) place_[i] = sorted[i] != 0 ? places++ : -1;
-    sorted_ = std::make_unique_for_overwrite<double[]>(start(places, n_ - 1));
     order_ = std::make_unique_for_overwrite<int[]>(start(places, n_ - 1));
     directory_ = std::make_unique_for_overwrite<int[]>(start(places, steps_));
     const Coordinates coordinates(positions);
@@ -50,18 +48,38 @@ void Distances::fill_row(int i, const Coordinates& of) {
     }
 }
 
+namespace {
+
+using Item = std::pair<double, int>;
+
+/// By distance, equal ones by index, in which order they are given.
+void sort_step(Item* first, Item* last) {
+    constexpr std::ptrdiff_t kFew = 24;
+    if (last - first > kFew) {
+        std::sort(first, last);
+        return;
+    }
+    for (Item* next = first + 1; next < last; ++next) {
+        const Item item = *next;
+        Item* to = next;
+        for (; to > first && item.first < (to - 1)->first; --to) *to = *(to - 1);
+        *to = item;
+    }
+}
+
+}  // namespace
+
 /// Into the steps of the directory first, where few are left to be told apart.
 void Distances::sort_row(int i) {
     const std::span<const double> distance = row(i);
     const int place = place_of(i);
-    double* sorted = sorted_.get() + start(place, n_ - 1);
     int* order = order_.get() + start(place, n_ - 1);
     int* directory = directory_.get() + start(place, steps_);
     const auto step_of = [&](int j) {
         return static_cast<std::size_t>(distance[static_cast<std::size_t>(j)] * directory_scale_);
     };
     thread_local std::vector<int> next;
-    thread_local std::vector<std::pair<double, int>> items;
+    thread_local std::vector<Item> items;
     next.assign(static_cast<std::size_t>(steps_) + 1, 0);
     items.resize(static_cast<std::size_t>(n_));
     for (int j = 0; j < n_; ++j)
@@ -71,11 +89,9 @@ void Distances::sort_row(int i) {
     for (int j = 0; j < n_; ++j)
         if (j != i)
             items[static_cast<std::size_t>(next[step_of(j)]++)] = {distance[static_cast<std::size_t>(j)], j};
-    for (int s = 0; s < steps_; ++s) {
-        auto *first = items.data() + directory[s], *last = items.data() + next[static_cast<std::size_t>(s)];
-        if (last - first > 1) std::sort(first, last);
-    }
-    for (int k = 0; k < n_ - 1; ++k) std::tie(sorted[k], order[k]) = items[static_cast<std::size_t>(k)];
+    for (int s = 0; s < steps_; ++s)
+        sort_step(items.data() + directory[s], items.data() + next[static_cast<std::size_t>(s)]);
+    for (int k = 0; k < n_ - 1; ++k) order[k] = items[static_cast<std::size_t>(k)].second;
 }
 
 }  // namespace insym

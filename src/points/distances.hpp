@@ -12,7 +12,7 @@
 
 namespace insym {
 
-/// Immutable after construction; reading is thread-safe. Memory 21 n^2 bytes, time O(n^2 log n); 8 n^2 and
+/// Immutable after construction; reading is thread-safe. Memory 13 n^2 bytes, time O(n^2 log n); 8 n^2 and
 /// O(n^2) for the points that are not sorted about.
 class Distances {
 public:
@@ -37,18 +37,19 @@ public:
     /// first, until it returns false. O(1) to find the first.
     template <class Visit>
     void visit_shell(int i, double low, double high, Visit visit) const {
-        const double* d = sorted_.get() + start(place_of(i), n_ - 1);
-        const int* point = order_.get() + start(place_of(i), n_ - 1);
-        for (int k = first_at(i, low); k < n_ - 1 && d[k] <= high; ++k)
-            if (!visit(point[k], d[k])) return;
+        const double* d = row(i).data();
+        const int* point = nearest_first(i).data();
+        for (int k = first_at(i, low); k < n_ - 1 && d[point[k]] <= high; ++k)
+            if (!visit(point[k], d[point[k]])) return;
     }
 
     /// The places in nearest_first(i) of those points: from the first to before the second.
     std::pair<int, int> shell(int i, double low, double high) const {
-        const double* d = sorted_.get() + start(place_of(i), n_ - 1);
+        const double* d = row(i).data();
+        const int* point = nearest_first(i).data();
         const int first = first_at(i, low);
         int end = std::max(first, first_in_step(i, high));
-        while (end < n_ - 1 && d[end] <= high) ++end;
+        while (end < n_ - 1 && d[point[end]] <= high) ++end;
         return {first, end};
     }
 
@@ -64,9 +65,10 @@ private:
     }
     /// The place of the first point that is not nearer than `low`.
     int first_at(int i, double low) const {
-        const double* d = sorted_.get() + start(place_of(i), n_ - 1);
+        const double* d = row(i).data();
+        const int* point = nearest_first(i).data();
         int k = first_in_step(i, low);
-        while (k < n_ - 1 && d[k] < low) ++k;
+        while (k < n_ - 1 && d[point[k]] < low) ++k;
         return k;
     }
     int place_of(int i) const { return place_[static_cast<std::size_t>(i)]; }
@@ -80,8 +82,7 @@ private:
     double directory_scale_ = 0;
     // Not initialised: the threads that fill them touch their pages first.
     std::unique_ptr<double[]> matrix_;
-    std::vector<int> place_;            // of each sorted point in what follows
-    std::unique_ptr<double[]> sorted_;  // the distances in the order of order_
+    std::vector<int> place_;  // of each sorted point in what follows
     std::unique_ptr<int[]> order_;
     std::unique_ptr<int[]> directory_;  // for each point and step: the first place in its order at or beyond
 };
