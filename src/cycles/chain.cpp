@@ -167,6 +167,8 @@ double ChainOracle::extended_tolerance(const Chain& chain, Chain::Inwards inward
             return tolerance_with<5>(orbits.data(), d, inwards, floor, limit);
         case 6:
             return tolerance_with<6>(orbits.data(), d, inwards, floor, limit);
+        case 7:
+            return tolerance_with<7>(orbits.data(), d, inwards, floor, limit);
         default:
             break;
     }
@@ -279,18 +281,22 @@ void ChainOracle::collect_extremes(std::span<const int> points, bool closed) {
     }
 }
 
-bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double eps) {
-    const std::size_t c = points.size();
-    // What could replace a point the last time often can again: most chains end here.
+bool ChainOracle::replaceable_as_before(std::span<const int> points, bool closed, double eps) {
     extremes_.clear();
     collects_ = false;
-    for (std::size_t k = 0; k < c; ++k)
+    for (std::size_t k = 0; k < points.size(); ++k)
         if (const int q = replaced_by_[static_cast<std::size_t>(points[k])];
             q >= 0 && fits_in_place(points, closed, k, q, eps))
-            return false;
+            return true;
+    return false;
+}
+
+bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double eps) {
+    if (replaceable_as_before(points, closed, eps)) return false;
     collects_ = true;
     // From the ends inwards: there the distances say least. The last first: what can replace the fourth point
     // of a chain that was made of three is where it came from.
+    const std::size_t c = points.size();
     for (std::size_t k = 0; k < c; ++k)
         if (replaceable(points, closed, k % 2 == 0 ? c - 1 - k / 2 : k / 2, eps)) return false;
     return true;

@@ -59,10 +59,6 @@ public:
     /// Orbit r - 1 holds the distances |P_l P_{l+r}|.
     std::span<const Span> orbits() const { return {orbits_.data(), end_ - begin_ - 1}; }
     const Fingerprint& fingerprint() const { return fingerprint_; }
-    /// That of the chain with one more point.
-    Fingerprint fingerprint_with(int point, End end) const {
-        return fingerprint_.with_link(from(end, 0), point);
-    }
 
 private:
     const Scene* scene_;
@@ -89,6 +85,8 @@ public:
     double closed_tolerance(const Chain& chain);
     /// C2: no outside point can replace a point of the sequence with its E_min, `eps`, still valid.
     bool unambiguous(std::span<const int> points, bool closed, double eps);
+    /// Is it not, by what could replace one of its points the last time? Most sequences end here.
+    bool replaceable_as_before(std::span<const int> points, bool closed, double eps);
     /// Of the last sequence that was not unambiguous: the point that another can replace.
     int replaced_point() const { return replaced_point_; }
 

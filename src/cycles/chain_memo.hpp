@@ -32,11 +32,6 @@ public:
         // Another shift, lest the sums of both depend on one another.
         high_ += static_cast<std::uint32_t>((mixed ^ mixed >> 29) * 0xBF58476D1CE4E5B9ULL >> 32);
     }
-    Fingerprint with_link(int a, int b) const {
-        Fingerprint longer = *this;
-        longer.add_link(a, b);
-        return longer;
-    }
 
     std::uint64_t low() const { return low_; }
     std::uint32_t high() const { return high_; }

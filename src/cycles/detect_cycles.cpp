@@ -105,6 +105,7 @@ public:
           branches_(branches),
           failed_(failed),
           monitor_(monitor),
+          shortest_remembered_(in_tables(scene, fourths) ? kShortestRememberedInTables : kShortestRemembered),
           oracle_(scene, fourths),
           type_oracle_(scene),
           table_(scene),
@@ -130,6 +131,10 @@ public:
 
 private:
     bool is_start(int a, int b, int c, int d) const;
+    void begin_start(std::span<const int> chain) {
+        start_size_ = chain.size();
+        start_alone_.reset();
+    }
     bool may_be_on_line(const Seed& seed) const;
     bool expand_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links);
     using Ends = std::pair<Candidate, Candidate>;  // the best candidates at the left and at the right end
@@ -147,7 +152,7 @@ private:
     bool resolve_open(std::span<const int> chain, double tolerance);
     bool resolve_open(std::span<const int> chain, double tolerance, ChainMemo::Id id);
     bool become_cycle(std::span<const int> chain, double tolerance);
-    bool resolve_closed(std::span<const int> ring, const Fingerprint& fingerprint, double tolerance);
+    bool resolve_closed(std::span<const int> ring, double tolerance);
     bool keep(std::span<const int> sequence, bool closed, double tolerance);
     bool extend(double& tolerance);
 
@@ -157,8 +162,12 @@ private:
     /// And less where seeds are chosen, in exact rows.
     static constexpr int kLongestPreferringInRows = 5;
     int longest_preferring() const { return seeds_.listed() ? kLongestPreferringInRows : kLongestPreferring; }
-    /// Shorter chains are met once only.
+    /// Shorter chains are met once or, in tables, twice only: to follow them again takes less than to
+    /// remember them.
     static constexpr std::size_t kShortestRemembered = 5;
+    static constexpr std::size_t kShortestRememberedInTables = 7;
+    /// So many chains of five ahead is asked for what they can take.
+    static constexpr std::size_t kPrefetched = 2;
 
     using Answer = ChainMemo::Answer;
     static Answer answer(bool found) { return found ? Answer::yes : Answer::no; }
@@ -166,10 +175,10 @@ private:
     /// The number of a chain in the memo, or none if it is too short for that.
     static constexpr ChainMemo::Id kNone = ~ChainMemo::Id{0};
     ChainMemo::Id remembered(std::span<const int> chain) {
-        return chain.size() < kShortestRemembered ? kNone : memo_.id(Fingerprint(chain));
+        return chain.size() < shortest_remembered_ ? kNone : memo_.id(Fingerprint(chain));
     }
     ChainMemo::Id remembered(const Chain& chain) {
-        return chain.points().size() < kShortestRemembered ? kNone : memo_.id(chain.fingerprint());
+        return chain.points().size() < shortest_remembered_ ? kNone : memo_.id(chain.fingerprint());
     }
 
     /// A chain on the way from a start, and the end at which the next point was added.
@@ -185,6 +194,7 @@ private:
     FourBranches& branches_;
     FailedSeeds& failed_;
     RunMonitor& monitor_;
+    const std::size_t shortest_remembered_;
     ChainOracle oracle_;
     TypeOracle type_oracle_;
     FiveTable table_;
@@ -196,10 +206,9 @@ private:
     End preferred_ = End::right;       // where ends tie
     bool tied_ = false;                // did the last path depend on that?
     Ends first_ends_;                  // what the start of the last path can take
-    // Does the chain of four, of five at hand become a cycle? What is remembered in another way is not asked
-    // here.
-    std::optional<bool> four_alone_;
-    std::optional<bool> five_alone_;
+    // Does the chain at hand, of so many points, by itself become a cycle? It is not in the memo.
+    std::size_t start_size_ = 0;
+    std::optional<bool> start_alone_;
     Fourths::List list_;
     Fourths::List fours_;  // the fourth points of a seed
     // Of C3: the chain, what it can take at either end, and with one of these:
@@ -229,9 +238,16 @@ void Expansion::follow_fives(int apex) {
             branches_.of(apex, left + i).best = table_.row(i).best;
         for (std::size_t j = 0; j < table_.columns(); ++j)
             branches_.of(apex, right + j).best = table_.column(j).best;
-        for (const FiveTable::Start& start : table_.starts())
-            follow_five(start, {a, apex, c}, branches_.of(apex, left + start.row),
-                        branches_.of(apex, right + start.column));
+        const std::vector<FiveTable::Start>& starts = table_.starts();
+        for (std::size_t k = 0; k < starts.size(); ++k) {
+            if (k + kPrefetched < starts.size()) {
+                const FiveTable::Start& later = starts[k + kPrefetched];
+                fourths_.prefetch(a, table_.row(later.row).fourth.next);
+                fourths_.prefetch(c, table_.column(later.column).fourth.next);
+            }
+            follow_five(starts[k], {a, apex, c}, branches_.of(apex, left + starts[k].row),
+                        branches_.of(apex, right + starts[k].column));
+        }
     });
 }
 
@@ -241,8 +257,8 @@ void Expansion::follow_five(const FiveTable::Start& start, const std::array<int,
                             Branches& column) {
     const Candidate &first = table_.row(start.row).fourth, &last = table_.column(start.column).fourth;
     const int five[] = {first.point, seed[0], seed[1], seed[2], last.point};
-    five_alone_.reset();
-    if (table_.ambiguous(start)) five_alone_ = false;
+    begin_start(five);
+    if (table_.ambiguous(start)) start_alone_ = false;
     std::optional<bool> found;  // whichever end is preferred
     std::optional<Ends> ends;
     const auto follow = [&](End end, Branches& branches) {
@@ -257,7 +273,6 @@ void Expansion::follow_five(const FiveTable::Start& start, const std::array<int,
     };
     if (start.of_row) follow(End::right, row);
     if (start.of_column) follow(End::left, column);
-    five_alone_.reset();
 }
 
 void Expansion::resolve_fours(int apex) {
@@ -272,9 +287,9 @@ void Expansion::resolve_fours(int apex) {
             const Candidate* const back_first = fourths_.of(c, backwards);
             std::size_t back = backwards;
             for (const Candidate* p = back_first; p->point >= 0 && p->point != a; ++p) ++back;
-            four_alone_.reset();
+            begin_start(four);
             if (replaces(*first, four, 3, d->tolerance) || replaces(*back_first, four, 0, d->tolerance))
-                four_alone_ = false;
+                start_alone_ = false;
             if (resolve_four(four, d->tolerance, {beyond_a, d->next}, branches_.of(apex, k),
                              branches_.of(c, back)))
                 continue;
@@ -300,13 +315,13 @@ bool Expansion::resolve_four(std::span<const int> four, double tolerance, std::a
     chain_.assign(four, links);
     const bool ends_here = left.none() && right.none();
     // As with seeds; `four` is in canonical form.
-    if (ends_here && !four_alone_ && type_oracle_.types(four, false, tolerance).empty()) four_alone_ = false;
+    if (ends_here && !start_alone_ && type_oracle_.types(four, false, tolerance).empty())
+        start_alone_ = false;
     bool found = !ends_here;
     const double closed = oracle_.closed_tolerance(chain_);
     const bool closes = closed <= std::min({left.best, right.best, scene_.max_tolerance});
     if (closes || ends_here)
-        found = (closes && resolve_closed(four, Fingerprint(four, true), closed)) ||
-                resolve_open(four, tolerance);
+        found = (closes && resolve_closed(four, closed)) || resolve_open(four, tolerance);
     bool failed = left.failed || right.failed;
     // Read the way in which it has nothing to its right, its own path grows to the left, but prefers the
     // right.
@@ -350,12 +365,13 @@ void Expansion::resolve_seeds(int apex) {
         ++visited_;
         const auto [a, c, links, ends, tolerance] = seed;
         const int points[] = {a, apex, c};
+        begin_start(points);
         // An equilateral triangle closes at once; it is met from all three apexes, or of the chosen ones from
         // some.
         Span ring = links;
         ring.include(ends);
         if ((apex < a || seeds_.listed()) && ring.spread() <= scene_.max_tolerance)
-            resolve_closed(points, Fingerprint(points, true), std::max(ring.spread(), scene_.resolution));
+            resolve_closed(points, std::max(ring.spread(), scene_.resolution));
         const SeedLink right = fourths_.link(a, apex, c), left = fourths_.link(c, apex, a);
         const bool alone = right == Fourths::kEmpty && left == Fourths::kEmpty;
         // Where nothing can be added it must be on a line: quicker to ask than C2.
@@ -374,7 +390,7 @@ bool Expansion::may_be_on_line(const Seed& seed) const {
 /// True if every branch found a cycle, be it the chain of four itself. In 3D it branches over the best fifth
 /// point at either end on each side of the plane of the three points there.
 bool Expansion::expand_four(std::span<const int> four, double tolerance, std::array<SeedLink, 2> links) {
-    four_alone_.reset();
+    begin_start(four);
     chain_.assign(four, links);
     if (scene_.dimension() != 3) {
         preferred_ = End::right;
@@ -426,9 +442,7 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends, bool met
     bool found = false, depends = false;
     while (true) {
         // What is far off in memory is asked for before it is needed.
-        const Fingerprint ring = chain_.fingerprint_with(chain_.from(End::left, 0), End::right);
-        rings_.prefetch(ring);
-        if (!met_once) memo_.prefetch(chain_.fingerprint());
+        if (!met_once && chain_.points().size() >= shortest_remembered_) memo_.prefetch(chain_.fingerprint());
         if (!ends) oracle_.prefetch_candidates(chain_);
         const double closed = oracle_.closed_tolerance(chain_);
         const ChainMemo::Id id = met_once ? kNone : remembered(chain_);
@@ -456,7 +470,7 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends, bool met
         const double best = std::min(right.tolerance, left.tolerance);
         const bool closes = closed <= std::min(best, scene_.max_tolerance);
         if (closes || best > scene_.max_tolerance) {
-            found = (closes && resolve_closed(chain_.points(), ring, closed)) ||
+            found = (closes && resolve_closed(chain_.points(), closed)) ||
                     resolve_open(chain_.points(), tolerance, id);
             remember(chain_.points(), id, found, false);
             break;
@@ -529,17 +543,14 @@ bool Expansion::resolve_open(std::span<const int> chain, double tolerance, Chain
     if (id != kNone) {
         if (const auto known = memo_[id].alone; known != Answer::unknown) return known == Answer::yes;
         passed_.push_back(id);
-    } else if (chain.size() == 4 && four_alone_) {
-        return *four_alone_;
-    } else if (chain.size() == 5 && five_alone_) {
-        return *five_alone_;
+    } else if (chain.size() == start_size_ && start_alone_) {
+        return *start_alone_;
     }
     const bool unambiguous = oracle_.unambiguous(chain, false, tolerance);
     if (!unambiguous && tolerance <= scene_.resolution) replaced_at_resolution_ = oracle_.replaced_point();
     const bool found = unambiguous && become_cycle(chain, tolerance);
     for (const ChainMemo::Id p : passed_) memo_[p].alone = answer(found);
-    if (id == kNone && chain.size() == 4) four_alone_ = found;
-    if (id == kNone && chain.size() == 5) five_alone_ = found;
+    if (id == kNone && chain.size() == start_size_) start_alone_ = found;
     return found;
 }
 
@@ -559,9 +570,11 @@ bool Expansion::become_cycle(std::span<const int> chain, double tolerance) {
     return keep(extended_.points(), false, tolerance);
 }
 
-/// A ring is met from each of its points and in both directions; asked once.
-bool Expansion::resolve_closed(std::span<const int> ring, const Fingerprint& fingerprint, double tolerance) {
-    const ChainMemo::Id id = rings_.id(fingerprint);
+/// A ring is met from each of its points and in both directions; what is not ambiguous at first sight is
+/// asked once.
+bool Expansion::resolve_closed(std::span<const int> ring, double tolerance) {
+    if (oracle_.replaceable_as_before(ring, true, tolerance)) return false;
+    const ChainMemo::Id id = rings_.id(Fingerprint(ring, true));
     if (rings_[id].alone == Answer::unknown)
         rings_[id].alone = answer(oracle_.unambiguous(ring, true, tolerance) && keep(ring, true, tolerance));
     return rings_[id].alone == Answer::yes;

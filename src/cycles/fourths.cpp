@@ -15,8 +15,8 @@ namespace {
 /// E_min of the chain of four with these distances, infinite above `limit`.
 double tolerance_of_four(const Span& links, const Span& steps, double ends, double floor, double limit) {
     if (links.spread() > limit || steps.spread() > limit) return std::numeric_limits<double>::infinity();
-    std::array<Span, 3> spans = {links, steps, Span{ends, ends}};
-    return tolerance_interval(spans, floor, limit).min;
+    const Span spans[] = {links, steps, {ends, ends}};
+    return detail::interval_of_few<3>(spans, floor, limit).min;
 }
 
 /// How much two distances of one orbit may differ. The exact test decides; rounding here must lose nothing.

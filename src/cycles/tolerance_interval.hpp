@@ -56,9 +56,9 @@ inline ToleranceInterval join_classes(const Span* ends, std::size_t count, doubl
 }
 
 /// For short chains, by far the most: loops of known length and sorting without branches, which would be coin
-/// tosses, of both ends at once.
+/// tosses, of both ends at once. Always in line: the spans are in registers where they come from.
 template <std::size_t kCount>
-ToleranceInterval interval_of_few(const Span* spans, double eps, double limit) {
+[[gnu::always_inline]] inline ToleranceInterval interval_of_few(const Span* spans, double eps, double limit) {
     using Ends = Eigen::Array2d;
     for (std::size_t i = 0; i < kCount; ++i) eps = std::max(eps, spans[i].spread());
     if (eps > limit) return {kInfinity, kInfinity};

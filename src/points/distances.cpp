@@ -20,9 +20,19 @@ struct Distances::Coordinates {
     std::array<std::vector<double>, 3> axes;
 };
 
+namespace {
+
+/// One for about four points; of small sets, where the search in a step would be all there is to do, more.
+int steps_for(int n) {
+    constexpr int kEnough = 256, kMostEntries = 1 << 16;
+    return std::max(n / 4, std::min(kEnough, kMostEntries / std::max(n, 1)));
+}
+
+}  // namespace
+
 Distances::Distances(const std::vector<Point>& positions, const std::vector<char>& sorted)
     : n_(static_cast<int>(positions.size())),
-      steps_(std::max(n_ / 4, 16)),
+      steps_(steps_for(n_)),
       // Every distance falls inside the directory, the diameter just so.
       directory_scale_(steps_ / (diameter(positions) * (1 + 1e-9))),
       matrix_(std::make_unique_for_overwrite<double[]>(start(n_, n_))),

@@ -78,7 +78,7 @@ private:
     }
 
     int n_ = 0;
-    int steps_ = 0;  // of distance, whose first points are known: one for about four points
+    int steps_ = 0;  // of distance, whose first points are known
     double directory_scale_ = 0;
     // Not initialised: the threads that fill them touch their pages first.
     std::unique_ptr<double[]> matrix_;
