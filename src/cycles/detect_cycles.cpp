@@ -130,6 +130,12 @@ public:
     }
 
 private:
+    /// A look at the clock takes as long as some steps.
+    bool should_stop() {
+        constexpr unsigned kAskedOnce = 32;
+        stopped_ = stopped_ || (++steps_ % kAskedOnce == 0 && monitor_.should_stop());
+        return stopped_;
+    }
     bool is_start(int a, int b, int c, int d) const;
     void begin_start(std::span<const int> chain) {
         start_size_ = chain.size();
@@ -221,6 +227,8 @@ private:
     std::vector<Extension> extensions_;
     std::vector<int> longer_;
     std::vector<ChainMemo::Id> passed_;
+    unsigned steps_ = 0;
+    bool stopped_ = false;
     std::size_t visited_ = 0;  // seeds
     std::vector<std::pair<CanonicalCycle, TypeSet>> found_;
 };
@@ -457,7 +465,7 @@ bool Expansion::follow_path(double tolerance, std::optional<Ends> ends, bool met
                 break;
             }
         }
-        if (monitor_.should_stop()) {
+        if (should_stop()) {
             tied_ = false;
             return true;
         }
