@@ -168,8 +168,7 @@ private:
     /// And less where seeds are chosen, in exact rows.
     static constexpr int kLongestPreferringInRows = 5;
     int longest_preferring() const { return seeds_.listed() ? kLongestPreferringInRows : kLongestPreferring; }
-    /// Shorter chains are met once or, in tables, twice only: to follow them again takes less than to
-    /// remember them.
+    /// Shorter chains are met once, in tables mostly: to follow them again takes less than to remember them.
     static constexpr std::size_t kShortestRemembered = 5;
     static constexpr std::size_t kShortestRememberedInTables = 7;
     /// So many chains of five ahead is asked for what they can take.

@@ -1,7 +1,6 @@
 #include "cycles/fourths.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <bit>
 #include <optional>
