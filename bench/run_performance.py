@@ -271,8 +271,8 @@ def kicad_paths(bench, listing):
 
 
 def development_list(bench):
-    listing = (bench.options.shared / "bench" / "kicad_dev.txt").read_text().splitlines()
-    return [line.split(" ", 2)[2] for line in listing if line]
+    listing = bench.options.shared / "bench" / "kicad_dev.txt"
+    return [line.split(" ", 2)[2] for line in listing.read_text().splitlines() if line] if listing.exists() else []
 
 
 def header_table(bench, path):

@@ -282,7 +282,6 @@ void ChainOracle::collect_extremes(std::span<const int> points, bool closed) {
 }
 
 bool ChainOracle::replaceable_as_before(std::span<const int> points, bool closed, double eps) {
-    extremes_.clear();
     collects_ = false;
     for (std::size_t k = 0; k < points.size(); ++k)
         if (const int q = replaced_by_[static_cast<std::size_t>(points[k])];
@@ -291,15 +290,15 @@ bool ChainOracle::replaceable_as_before(std::span<const int> points, bool closed
     return false;
 }
 
-bool ChainOracle::unambiguous(std::span<const int> points, bool closed, double eps) {
-    if (replaceable_as_before(points, closed, eps)) return false;
+bool ChainOracle::replaceable_anywhere(std::span<const int> points, bool closed, double eps) {
+    extremes_.clear();
     collects_ = true;
     // From the ends inwards: there the distances say least. The last first: what can replace the fourth point
     // of a chain that was made of three is where it came from.
     const std::size_t c = points.size();
     for (std::size_t k = 0; k < c; ++k)
-        if (replaceable(points, closed, k % 2 == 0 ? c - 1 - k / 2 : k / 2, eps)) return false;
-    return true;
+        if (replaceable(points, closed, k % 2 == 0 ? c - 1 - k / 2 : k / 2, eps)) return true;
+    return false;
 }
 
 /// What can stand in the place of a point is a fourth point of the three beside it, on whichever side there

@@ -84,9 +84,13 @@ public:
     /// E_min of the chain closed to a cycle, infinite above max_tolerance. O(c log c).
     double closed_tolerance(const Chain& chain);
     /// C2: no outside point can replace a point of the sequence with its E_min, `eps`, still valid.
-    bool unambiguous(std::span<const int> points, bool closed, double eps);
-    /// Is it not, by what could replace one of its points the last time? Most sequences end here.
+    bool unambiguous(std::span<const int> points, bool closed, double eps) {
+        return !replaceable_as_before(points, closed, eps) && !replaceable_anywhere(points, closed, eps);
+    }
+    /// Can what could replace one of the points the last time do it again? Most sequences end here.
     bool replaceable_as_before(std::span<const int> points, bool closed, double eps);
+    /// Can any point? Where the quick question above has been asked in vain.
+    bool replaceable_anywhere(std::span<const int> points, bool closed, double eps);
     /// Of the last sequence that was not unambiguous: the point that another can replace.
     int replaced_point() const { return replaced_point_; }
 
@@ -95,9 +99,7 @@ public:
     void candidates(const Chain& chain, End end, std::vector<Candidate>& out);
     /// They are asked for soon.
     void prefetch_candidates(const Chain& chain) const {
-        for (const End end : {End::left, End::right})
-            if (const SeedLink link = chain.link(end); link != kUnknownLink)
-                fourths_.prefetch(chain.from(end, 1), link);
+        for (const End end : {End::left, End::right}) fourths_.prefetch(chain.from(end, 1), chain.link(end));
     }
     /// The first of them, or kNobody if none is within `limit`. `least`: E_min of the chain.
     Candidate best_candidate(const Chain& chain, End end, double least, double limit);

@@ -583,7 +583,8 @@ bool Expansion::resolve_closed(std::span<const int> ring, double tolerance) {
     if (oracle_.replaceable_as_before(ring, true, tolerance)) return false;
     const ChainMemo::Id id = rings_.id(Fingerprint(ring, true));
     if (rings_[id].alone == Answer::unknown)
-        rings_[id].alone = answer(oracle_.unambiguous(ring, true, tolerance) && keep(ring, true, tolerance));
+        rings_[id].alone =
+            answer(!oracle_.replaceable_anywhere(ring, true, tolerance) && keep(ring, true, tolerance));
     return rings_[id].alone == Answer::yes;
 }
 

@@ -42,12 +42,10 @@ class Fourths {
 public:
     using List = std::vector<Candidate>;
 
-    static constexpr std::size_t kMostStored = std::size_t{1} << 25;  // of 16 bytes
-
     /// With more than `most_chains` chains of four it gives up, and says so; 0: it does not. More than
-    /// `most_stored` items are not kept.
+    /// `most_stored` items, of 16 bytes, are not kept.
     Fourths(const Scene& scene, const Seeds& seeds, std::size_t most_chains, RunMonitor& monitor,
-            std::size_t most_stored = kMostStored);
+            std::size_t most_stored);
     /// Stores nothing, for few questions.
     explicit Fourths(const Scene& scene) : scene_(scene) {}
 
@@ -60,9 +58,10 @@ public:
     const Candidate* of(int b, SeedLink link) const {
         return apexes_[static_cast<std::size_t>(b)].fourths.data() + link;
     }
+    /// They are asked for soon, if it is known where they are.
     void prefetch(int b, SeedLink link) const {
 #if defined(__GNUC__)
-        __builtin_prefetch(of(b, link));
+        if (link != kUnknownLink) __builtin_prefetch(of(b, link));
 #endif
     }
     /// Where they are stored, if they are.
@@ -126,7 +125,7 @@ private:
 
     const Scene& scene_;
     const Seeds* listed_ = nullptr;  // the seeds, where they are not all there are
-    std::size_t most_stored_ = kMostStored;
+    std::size_t most_stored_ = 0;
     bool stored_ = false;
     bool too_many_ = false;
     std::vector<Apex> apexes_;

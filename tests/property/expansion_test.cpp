@@ -1,8 +1,8 @@
 // The expansion of cycles (definitions, section 4) and the tables that it and what follows look things up in.
 //
 // Oracles: chains of five in tables about their seed against one chain of four after the other, with nothing
-// stored (only the time may differ); brute force over all points for shells and fields of distances; straight
-// chains, which have no turn, in any pose.
+// stored (only the time may differ); brute force over all points for distances in order, shells and fields of
+// distances; straight chains, which have no turn, in any pose.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -82,6 +82,37 @@ RC_GTEST_PROP(Expansion, tables_find_what_one_chain_of_four_after_the_other_find
     RC_CLASSIFY(in_tables.cycles.empty(), "no cycle");
     RC_ASSERT(in_tables.seeds == one_by_one.seeds);
     RC_ASSERT(listed(in_tables) == listed(one_by_one));
+}
+
+RC_GTEST_PROP(Distances, in_order_are_those_of_the_matrix, ()) {
+    Random random(*rc::gen::arbitrary<std::uint64_t>());
+    PointSet points = some_points(3, random);
+    // As many equally far from one point as make a crowded step of the directory.
+    const int ring = *rc::gen::inRange(0, 60);
+    for (int i = 0; i < ring; ++i) {
+        const double angle = 2 * std::numbers::pi * i / ring;
+        points.positions.push_back({7 + std::cos(angle), std::sin(angle), 5});
+    }
+    points.positions.push_back({7, 0, 5});
+    const Distances distances(points.positions);
+    const int n = distances.size();
+    for (int i = 0; i < n; ++i) {
+        std::vector<std::pair<double, int>> want;
+        for (int p = 0; p < n; ++p)
+            if (p != i) want.emplace_back(distances(i, p), p);
+        std::sort(want.begin(), want.end());
+        const auto order = distances.nearest_first(i);
+        for (std::size_t k = 0; k < order.size(); ++k) RC_ASSERT(order[k] == want[k].second);
+        const double low = i % 2 == 0 ? uniform(random, -1, 3) : want.front().first;
+        const double high = i % 3 == 0 ? low + uniform(random, 0, 2) : want[want.size() / 2].first;
+        std::vector<std::pair<double, int>> shell;
+        distances.visit_shell(i, low, high, [&](int p, double d) {
+            shell.emplace_back(d, p);
+            return true;
+        });
+        std::erase_if(want, [&](const auto& w) { return w.first < low || w.first > high; });
+        RC_ASSERT(shell == want);
+    }
 }
 
 RC_GTEST_PROP(Shells, keep_the_points_at_that_distance, ()) {
