@@ -6,8 +6,8 @@
 The page has a part for each section, between <!-- figures: NAME --> and <!-- end of figures -->. Only the parts of the
 sections that are run are replaced; words by hand stay. Plots go to the folder images beside the page. --quick shows in
 less than a minute that all of it works: few points, few models; unless --page says otherwise it writes to
-build/performance. Sections `kicad`, `paper_kicad` and `long_reference` run only when they are named or, the first two,
-with --kicad.
+build/performance. Sections `whole`, `kicad`, `paper_kicad` and `long_reference` run only when they are named or, those of
+KiCad, with --kicad.
 """
 import argparse
 import datetime
@@ -239,6 +239,20 @@ def paper_kicad(bench):
     return table(["model", "vertices", "cycles", "detect, s", "target, s"], rows)
 
 
+def whole(bench):
+    """A large model at growing tolerances, without the limit of chains."""
+    path = bench.model("dsub37.step")
+    if not path:
+        return None
+    rows = []
+    for share in (0.005,) if bench.quick else (0.005, 0.01, 0.02, 0.03, 0.05):
+        run = bench.detect(path, method="paper", share=share, kinds=CYCLES_ONLY, points="vertices", max_chains=0, time_limit=None)
+        stats = run.report["stats"]
+        rows.append([share, stats["seeds"], stats["cycles"], stats["symmetries"], seconds(run.timing["cycles_s"]),
+                     seconds(run.timing["symmetries_s"]), seconds(detect_s(run)), f"{run.peak_mib:,.0f}"])
+    return table(["share", "seeds", "cycles", "symmetries", "cycles, s", "symmetries, s", "detect, s", "MiB"], rows)
+
+
 # Models -----------------------------------------------------------------------------------------------
 
 MODELS = ("as1-oc-214.stp", "Ventilator.stp", "dsub37.step", "spinner2.stp", "spinner4.stp", "linkrods.step")
@@ -376,10 +390,10 @@ def spglib(bench):
 
 # The page ---------------------------------------------------------------------------------------------
 
-SECTIONS = {"growth": growth, "paper": paper, "paper_kicad": paper_kicad, "models": models, "kicad": kicad, "threads": threads, "reference": reference,
-            "long_reference": long_reference, "spglib": spglib}
+SECTIONS = {"growth": growth, "paper": paper, "paper_kicad": paper_kicad, "whole": whole, "models": models, "kicad": kicad,
+            "threads": threads, "reference": reference, "long_reference": long_reference, "spglib": spglib}
 OF_KICAD = {"kicad", "paper_kicad"}
-ONLY_WHEN_NAMED = OF_KICAD | {"long_reference"}
+ONLY_WHEN_NAMED = OF_KICAD | {"whole", "long_reference"}
 
 
 def with_figures(page, name, text):

@@ -19,9 +19,10 @@ struct CycleSearch {
     /// With more chains of four points the tolerance is lowered, a fifth at a time and not below ten
     /// resolutions, until there are no more; 0: never.
     std::size_t most_chains = 0;
-    /// Of the ends of chains of four, kept in memory; with more, all are made anew when asked for. Only the
-    /// time depends on it.
-    std::size_t most_stored = std::size_t{1} << 25;
+    /// Of the ends of chains of four, kept in memory, 32 bytes each with what is known of them; with more,
+    /// all are made anew when asked for. Only time and memory depend on it, and less of both is needed with
+    /// them.
+    std::size_t most_stored = std::size_t{1} << 28;
 };
 
 struct CycleSearchResult {

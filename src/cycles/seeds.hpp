@@ -66,13 +66,15 @@ template <class Ask, class Visit>
 void Seeds::find(int apex, Ask ask, Visit visit) const {
     const auto d = scene_.distances.row(apex);
     const auto others = scene_.distances.nearest_first(apex);
-    for (std::size_t i = 0; i < others.size(); ++i) {
+    const auto distance = [&](std::size_t i) { return d[static_cast<std::size_t>(others[i])]; };
+    for (std::size_t i = 0; i + 1 < others.size(); ++i) {
         if (i % kAskedOnce == 0 && monitor_.should_stop()) return;
+        const double near = distance(i);
+        if (distance(i + 1) - near > scene_.max_tolerance) continue;
         if (scene_.label(others[i]) != scene_.label(apex)) continue;
-        const double near = d[static_cast<std::size_t>(others[i])];
         const auto to_first = scene_.distances.row(others[i]);
         for (std::size_t j = i + 1; j < others.size(); ++j) {
-            const double far = d[static_cast<std::size_t>(others[j])];
+            const double far = distance(j);
             if (far - near > scene_.max_tolerance) break;
             if (scene_.label(others[j]) != scene_.label(apex)) continue;
             if (!ask(others[i], others[j])) continue;

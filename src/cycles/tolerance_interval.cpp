@@ -9,8 +9,11 @@ namespace {
 ToleranceInterval interval_of_many(std::span<const Span> spans, double eps, double limit) {
     for (const Span& span : spans) eps = std::max(eps, span.spread());
     if (eps > limit) return {detail::kInfinity, detail::kInfinity};
-    std::vector<Span> ends(spans.begin(), spans.end());
-    std::sort(ends.begin(), ends.end(), [](const Span& a, const Span& b) { return a.low < b.low; });
+    thread_local std::vector<Span> ends;
+    ends.assign(spans.begin(), spans.end());
+    const auto lower = [](const Span& a, const Span& b) { return a.low < b.low; };
+    // In straight rows they are in order.
+    if (!std::is_sorted(ends.begin(), ends.end(), lower)) std::sort(ends.begin(), ends.end(), lower);
     // The highest end so far does as well as the sorted ones: where there is a gap, they agree.
     for (std::size_t i = 1; i < ends.size(); ++i) ends[i].high = std::max(ends[i].high, ends[i - 1].high);
     return detail::join_classes(ends.data(), ends.size(), eps, limit);

@@ -62,13 +62,8 @@ namespace {
 
 using Item = std::pair<double, int>;
 
-/// By distance, equal ones by index, in which order they are given.
-void sort_step(Item* first, Item* last) {
-    constexpr std::ptrdiff_t kFew = 24;
-    if (last - first > kFew) {
-        std::sort(first, last);
-        return;
-    }
+/// By distance, equal ones by index, in which order they are given; nearly sorted, or few.
+void insert_in_order(Item* first, Item* last) {
     for (Item* next = first + 1; next < last; ++next) {
         const Item item = *next;
         Item* to = next;
@@ -79,28 +74,32 @@ void sort_step(Item* first, Item* last) {
 
 }  // namespace
 
-/// Into the steps of the directory first, where few are left to be told apart.
+/// Into parts of the steps of the directory first, of about one point, where few are left to be told apart.
 void Distances::sort_row(int i) {
+    constexpr int kParts = 4, kFew = 24;
     const std::span<const double> distance = row(i);
     const int place = place_of(i);
     int* order = order_.get() + start(place, n_ - 1);
     int* directory = directory_.get() + start(place, steps_);
-    const auto step_of = [&](int j) {
-        return static_cast<std::size_t>(distance[static_cast<std::size_t>(j)] * directory_scale_);
+    const auto part_of = [&](int j) {
+        return static_cast<std::size_t>(distance[static_cast<std::size_t>(j)] * (kParts * directory_scale_));
     };
     thread_local std::vector<int> next;
     thread_local std::vector<Item> items;
-    next.assign(static_cast<std::size_t>(steps_) + 1, 0);
+    next.assign(static_cast<std::size_t>(kParts * steps_) + 1, 0);
     items.resize(static_cast<std::size_t>(n_));
     for (int j = 0; j < n_; ++j)
-        if (j != i) ++next[step_of(j) + 1];
+        if (j != i) ++next[part_of(j) + 1];
+    const bool crowded = *std::max_element(next.begin(), next.end()) > kFew;
     std::partial_sum(next.begin(), next.end(), next.begin());
-    std::copy(next.begin(), next.end() - 1, directory);
+    for (int s = 0; s < steps_; ++s) directory[s] = next[static_cast<std::size_t>(kParts * s)];
     for (int j = 0; j < n_; ++j)
         if (j != i)
-            items[static_cast<std::size_t>(next[step_of(j)]++)] = {distance[static_cast<std::size_t>(j)], j};
-    for (int s = 0; s < steps_; ++s)
-        sort_step(items.data() + directory[s], items.data() + next[static_cast<std::size_t>(s)]);
+            items[static_cast<std::size_t>(next[part_of(j)]++)] = {distance[static_cast<std::size_t>(j)], j};
+    int first = 0;  // of a part; by now `next` is where it ends
+    for (std::size_t part = 0; crowded && part + 1 < next.size(); first = next[part++])
+        if (next[part] - first > kFew) std::sort(items.data() + first, items.data() + next[part]);
+    insert_in_order(items.data(), items.data() + n_ - 1);
     for (int k = 0; k < n_ - 1; ++k) order[k] = items[static_cast<std::size_t>(k)].second;
 }
 

@@ -114,6 +114,17 @@ def check_runner(folder):
     print("sections run:", ", ".join(sorted(written)))
 
 
+def check_in_turns(folder):
+    """A program compared with itself finds the same."""
+    path = folder / "points.xyz"
+    assembly.write_points(path, assembly.assembly(60)[0])
+    said = subprocess.run([SOURCES / "bench/in_turns.py", PROGRAM, path, "--insym", PROGRAM, "--share", "1e-3", "--threads", "1",
+                           "--repetitions", "1"], check=True, capture_output=True, text=True).stdout
+    row, = cells(said)
+    assert row["n"] == str(len(path.read_text().splitlines())) and row["same"] == "yes", said
+    assert float(row["before, s"]) > 0 and float(row["ratio"]) > 0, said
+
+
 def check_kicad_list():
     """Oracle: the list that is given with the project; names of packages whose pins can be counted."""
     listing = SOURCES / "../shared/bench/kicad_dev.txt"
@@ -152,4 +163,5 @@ check_kicad_list()
 check_calibration()
 check_planted()
 with tempfile.TemporaryDirectory() as scratch:
+    check_in_turns(Path(scratch))
     check_runner(Path(scratch))

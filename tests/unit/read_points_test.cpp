@@ -5,6 +5,7 @@
 #include "insym/error.hpp"
 
 #include <clocale>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -229,8 +230,9 @@ TEST(ReadAtoms, OnlyTheFirstFrameIsRead) {
 /// What cannot be opened; each case makes its own path.
 class ReadPointsFile : public testing::Test {
 protected:
-    ReadPointsFile() : folder_(testing::TempDir() + "insym_read_points_test") {
-        std::filesystem::create_directories(folder_);
+    ReadPointsFile() {
+        std::string name = testing::TempDir() + "insym_read_points_XXXXXX";
+        folder_ = mkdtemp(name.data());
     }
     ~ReadPointsFile() override { std::filesystem::remove_all(folder_); }
 
@@ -244,7 +246,7 @@ protected:
         return "no error";
     }
 
-    const std::string folder_;
+    std::string folder_;
 };
 
 TEST_F(ReadPointsFile, ReadsAFile) {
