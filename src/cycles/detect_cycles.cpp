@@ -234,7 +234,7 @@ private:
 
 void Expansion::follow_fives(int apex) {
     fourths_.visit_seeds(apex, [&](int a, int c, SeedLink right) {
-        if (a > c) return;
+        if (a > c || should_stop()) return;
         const SeedLink left = fourths_.link(c, apex, a);
         if (left == Fourths::kEmpty) return;
         table_.fill(
@@ -284,6 +284,7 @@ void Expansion::follow_five(const FiveTable::Start& start, const std::array<int,
 
 void Expansion::resolve_fours(int apex) {
     fourths_.visit_seeds(apex, [&](int a, int c, SeedLink list) {
+        if (should_stop()) return;
         const Candidate* const first = fourths_.of(apex, list);
         const SeedLink beyond_a = fourths_.link(c, apex, a);
         std::size_t k = list;
