@@ -76,7 +76,8 @@ void insert_in_order(Item* first, Item* last) {
 
 /// Into parts of the steps of the directory first, of about one point, where few are left to be told apart.
 void Distances::sort_row(int i) {
-    constexpr int kParts = 4, kFew = 24;
+    constexpr std::size_t kParts = 4;
+    constexpr int kFew = 24;
     const std::span<const double> distance = row(i);
     const int place = place_of(i);
     int* order = order_.get() + start(place, n_ - 1);
@@ -86,19 +87,24 @@ void Distances::sort_row(int i) {
     };
     thread_local std::vector<int> next;
     thread_local std::vector<Item> items;
-    next.assign(static_cast<std::size_t>(kParts * steps_) + 1, 0);
+    next.assign(kParts * static_cast<std::size_t>(steps_) + 1, 0);
     items.resize(static_cast<std::size_t>(n_));
     for (int j = 0; j < n_; ++j)
         if (j != i) ++next[part_of(j) + 1];
     const bool crowded = *std::max_element(next.begin(), next.end()) > kFew;
     std::partial_sum(next.begin(), next.end(), next.begin());
-    for (int s = 0; s < steps_; ++s) directory[s] = next[static_cast<std::size_t>(kParts * s)];
+    for (int s = 0; s < steps_; ++s) directory[s] = next[kParts * static_cast<std::size_t>(s)];
     for (int j = 0; j < n_; ++j)
         if (j != i)
             items[static_cast<std::size_t>(next[part_of(j)]++)] = {distance[static_cast<std::size_t>(j)], j};
-    int first = 0;  // of a part; by now `next` is where it ends
-    for (std::size_t part = 0; crowded && part + 1 < next.size(); first = next[part++])
-        if (next[part] - first > kFew) std::sort(items.data() + first, items.data() + next[part]);
+    if (crowded) {
+        int first = 0;
+        // By now `next` is where the parts end.
+        for (const int end : std::span(next).first(next.size() - 1)) {
+            if (end - first > kFew) std::sort(items.data() + first, items.data() + end);
+            first = end;
+        }
+    }
     insert_in_order(items.data(), items.data() + n_ - 1);
     for (int k = 0; k < n_ - 1; ++k) order[k] = items[static_cast<std::size_t>(k)].second;
 }
