@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -76,24 +77,26 @@ void insert_in_order(Item* first, Item* last) {
 
 /// Into parts of the steps of the directory first, of about one point, where few are left to be told apart.
 void Distances::sort_row(int i) {
-    constexpr std::size_t kParts = 4;
     constexpr int kFew = 24;
+    // A power of two: so a part lies in the step that the same distance is looked up in, whatever is rounded.
+    const std::size_t parts = std::bit_floor(static_cast<unsigned>(std::max(1, n_ / steps_)));
+    const double part_scale = static_cast<double>(parts) * directory_scale_;
     const std::span<const double> distance = row(i);
     const int place = place_of(i);
     int* order = order_.get() + start(place, n_ - 1);
     int* directory = directory_.get() + start(place, steps_);
     const auto part_of = [&](int j) {
-        return static_cast<std::size_t>(distance[static_cast<std::size_t>(j)] * (kParts * directory_scale_));
+        return static_cast<std::size_t>(distance[static_cast<std::size_t>(j)] * part_scale);
     };
     thread_local std::vector<int> next;
     thread_local std::vector<Item> items;
-    next.assign(kParts * static_cast<std::size_t>(steps_) + 1, 0);
+    next.assign(parts * static_cast<std::size_t>(steps_) + 1, 0);
     items.resize(static_cast<std::size_t>(n_));
     for (int j = 0; j < n_; ++j)
         if (j != i) ++next[part_of(j) + 1];
     const bool crowded = *std::max_element(next.begin(), next.end()) > kFew;
     std::partial_sum(next.begin(), next.end(), next.begin());
-    for (int s = 0; s < steps_; ++s) directory[s] = next[kParts * static_cast<std::size_t>(s)];
+    for (int s = 0; s < steps_; ++s) directory[s] = next[parts * static_cast<std::size_t>(s)];
     for (int j = 0; j < n_; ++j)
         if (j != i)
             items[static_cast<std::size_t>(next[part_of(j)]++)] = {distance[static_cast<std::size_t>(j)], j};

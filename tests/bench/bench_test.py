@@ -118,8 +118,8 @@ def check_in_turns(folder):
     """A program compared with itself finds the same."""
     path = folder / "points.xyz"
     assembly.write_points(path, assembly.assembly(60)[0])
-    said = subprocess.run([SOURCES / "bench/in_turns.py", PROGRAM, path, "--insym", PROGRAM, "--share", "1e-3", "--threads", "1",
-                           "--repetitions", "1"], check=True, capture_output=True, text=True).stdout
+    said = subprocess.run([SOURCES / "bench/in_turns.py", PROGRAM, "--insym", PROGRAM, "--default", "--threads", "1",
+                           "--repetitions", "1", path], check=True, capture_output=True, text=True).stdout
     row, = cells(said)
     assert row["n"] == str(len(path.read_text().splitlines())) and row["same"] == "yes", said
     assert float(row["before, s"]) > 0 and float(row["ratio"]) > 0, said

@@ -5,7 +5,6 @@
 #include "insym/error.hpp"
 
 #include <clocale>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -14,6 +13,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace insym {
 namespace {
@@ -230,9 +230,9 @@ TEST(ReadAtoms, OnlyTheFirstFrameIsRead) {
 /// What cannot be opened; each case makes its own path.
 class ReadPointsFile : public testing::Test {
 protected:
-    ReadPointsFile() {
-        std::string name = testing::TempDir() + "insym_read_points_XXXXXX";
-        folder_ = mkdtemp(name.data());
+    // Another checkout may run the same test.
+    ReadPointsFile() : folder_(testing::TempDir() + "insym_read_points_" + std::to_string(getpid())) {
+        std::filesystem::create_directories(folder_);
     }
     ~ReadPointsFile() override { std::filesystem::remove_all(folder_); }
 
@@ -246,7 +246,7 @@ protected:
         return "no error";
     }
 
-    std::string folder_;
+    const std::string folder_;
 };
 
 TEST_F(ReadPointsFile, ReadsAFile) {
